@@ -9,10 +9,9 @@ import pytest
 
 from tree_sway import tables
 from tree_sway.files import wind
-from tree_sway.files.wind import instruments
+from tree_sway.files.wind import instruments, Refusal
 from tree_sway.live.readers import instrument_lines
 from tree_sway.live.readers.instrument_lines import InstrumentLines
-from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.transport import Message
 
 ROW = (

@@ -19,13 +19,13 @@ from hypothesis import strategies as st
 import pytest
 
 from tree_sway.errors import ParameterError, TreeSwayError
+from tree_sway.files.wind import Refusal, WindReading
 from tree_sway.live import sources
 from tree_sway.live.readers.instrument_lines import InstrumentLines
 from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.signalk import SignalKWind
 from tree_sway.live.readers.weatherlink import read_conditions
-from tree_sway.live.reading import Refusal, WindReading
 from tree_sway.live.registry import open_source, source_kinds
 from tree_sway.live.sources.ecowitt import read_upload
 from tree_sway.live.transports.transport import Message
@@ -174,8 +174,8 @@ def test_what_is_no_path_is_refused(text: str) -> None:
         ('open-meteo:Berlin', 'no latitude and longitude'),
         ('open-meteo:91,13', 'no latitude and longitude'),
         ('metar:Tegel', 'no code of an airport'),
-        ('ecowitt:', 'no port'),
-        ('ecowitt:http', 'no port'),
+        ('ecowitt:', 'port from 1 to 65535'),
+        ('ecowitt:http', 'port from 1 to 65535'),
         ('http:///state.json', 'no host'),
         ('http://[::1/x', 'not an address'),
         ('http://host/?speed=a..b', 'is no path'),
@@ -384,3 +384,38 @@ def test_a_key_in_the_address_is_in_no_failure(hear, serve, answer: str, said: s
     heard = hear(f'http://{server}/x?key=secret&every=0.2')
     heard.until(lambda: said in heard.wind.problem)
     assert 'secret' not in f'{heard.said} {heard.wind.problem}'
+
+
+@pytest.mark.parametrize(
+    ('options', 'line', 'words'),
+    [
+        ('', b'5.3,270', ['taken as speed and direction in degrees', 'taken in m/s']),
+        ('?unit=kn', b'5.3,270', ['taken as speed and direction in degrees']),
+        ('?columns=speed,direction', b'5.3,270', ['taken in m/s']),
+        ('', b'5.3', ['taken in m/s']),
+        ('', b'5.3 m/s', []),
+        ('?columns=u,v', b'5.3,2.0', ['taken in m/s']),
+        ('?columns=direction,speed&unit=m/s', b'270,5.3', []),
+    ],
+)
+def test_what_is_assumed_of_numbers_is_told_with_its_option(
+    options: str, line: bytes, words: list[str]
+) -> None:
+    (reading,) = open_source(f'udp:5006{options}').source.read(Message(line))
+    assert isinstance(reading, WindReading)
+    assert all(each in reading.assumed for each in words)
+    assert reading.assumed.count('taken') == len(words)
+
+
+def test_numbers_by_order_are_told_once(hear, send, port) -> None:
+    heard = hear(f'udp://127.0.0.1:{port}')
+    heard.until(lambda: heard.wind.accepted > 3, lambda: send(port, b'5.3,270'))
+    assert sum('columns=direction,speed' in said for said in heard.said) == 1
+
+
+def test_fewer_numbers_than_columns_are_refused() -> None:
+    read = open_source('udp:5006?columns=-,speed,-').source.read
+    assert [each.kind for each in read(Message(b'1,5.3')) if isinstance(each, WindReading)]
+    (refusal,) = read(Message(b'5.3'))
+    assert isinstance(refusal, Refusal)
+    assert refusal.reason == '1 numbers for 3 columns'

@@ -193,8 +193,8 @@ WORDS: list[Any] = [
 
 @pytest.mark.parametrize('seed', range(40))
 def test_no_delta_or_report_breaks_a_reader(seed: int) -> None:
+    from tree_sway.files.wind import Refusal, WindReading
     from tree_sway.live.readers.signalk import SignalKWind
-    from tree_sway.live.reading import Refusal, WindReading
     from tree_sway.live.registry import open_source
     from tree_sway.live.transports.transport import Message
 

@@ -9,10 +9,10 @@ import math
 
 import pytest
 
+from tree_sway.files.wind import Reading, WindReading
 from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.instrument_lines import InstrumentLines
 from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.reading import Reading, WindReading
 from tree_sway.live.transports.transport import Message
 
 MPH = 0.44704

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from tree_sway.core.wind.sensor_timing import SensorTiming
-from tree_sway.live import live_wind
+from tree_sway.live import live_source, live_wind
 from tree_sway.live.live_wind import LiveWind
 from tree_sway.live.registry import open_source
 from tree_sway.live.transports.transport import Message
@@ -21,7 +21,8 @@ class Told:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, address: str = 'udp:5006') -> None:
         self.now = 0.0
         clock = SimpleNamespace(monotonic=lambda: self.now, time=lambda: self.now)
-        monkeypatch.setattr(live_wind, 'time', clock)
+        for module in (live_source, live_wind):
+            monkeypatch.setattr(module, 'time', clock)
         self.wind = LiveWind(open_source(address), lambda _: None)
 
     def tell(self, *times: float, line: bytes = b'5.0,270') -> None:

@@ -28,8 +28,8 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
+from tree_sway.files.wind import Refusal, WindReading
 from tree_sway.files.wind.sensor_line import checksum_of
-from tree_sway.live.reading import Refusal, WindReading
 from tree_sway.live.registry import open_source
 from tree_sway.live.transports.transport import Message
 from tree_sway.simulation.wind_source import blow

@@ -30,15 +30,15 @@ class Two(Told):
         """Send both once a second, the second half a second later."""
         for _ in range(times):
             self.now += 0.5
-            self.wind._link.deliver(first)
+            self.wind.link.deliver(first)
             self.now += 0.5
-            self.wind._link.deliver(second)
+            self.wind.link.deliver(second)
 
     def begin(self) -> None:
         """Send twice from one sender, which is followed then."""
         for _ in range(2):
             self.now += 1.0
-            self.wind._link.deliver(Message(FIRST, 'real:2'))
+            self.wind.link.deliver(Message(FIRST, 'real:2'))
 
     @property
     def n_refused(self) -> int:
@@ -97,11 +97,11 @@ def test_a_sender_that_is_silent_gives_way(two: Two) -> None:
     refused = two.n_refused
     for _ in range(60):
         two.now += 1.0
-        two.wind._link.deliver(Message(SECOND, 'b:1'))
+        two.wind.link.deliver(Message(SECOND, 'b:1'))
     assert two.wind.newest is not None
     assert two.wind.newest.speed == 20.0
     assert two.n_refused - refused < 15  # ten seconds of silence
-    two.wind._link.deliver(Message(FIRST, 'a:1'))
+    two.wind.link.deliver(Message(FIRST, 'a:1'))
     assert two.wind.newest.speed == 20.0
 
 
@@ -109,7 +109,7 @@ def test_a_sender_that_is_silent_gives_way(two: Two) -> None:
 def test_a_program_may_open_a_port_for_each_datagram(two: Two, data: bytes) -> None:
     for k in range(100):
         two.now += 1.0
-        two.wind._link.deliver(Message(data, f'10.0.0.5:{40_000 + k}'))
+        two.wind.link.deliver(Message(data, f'10.0.0.5:{40_000 + k}'))
     assert two.wind.accepted == 100
     assert two.n_refused == 0
 
@@ -117,16 +117,16 @@ def test_a_program_may_open_a_port_for_each_datagram(two: Two, data: bytes) -> N
 def test_numbers_of_messages_are_no_senders(two: Two) -> None:
     for k in range(100):
         two.now += 1.0
-        two.wind._link.deliver(Message(told(5, id=k)))
+        two.wind.link.deliver(Message(told(5, id=k)))
     assert two.wind.accepted == 100
 
 
 def test_a_stranger_without_a_good_sample_keeps_nobody_out(two: Two) -> None:
     for line in (b'hello', b'$WIMWV,270.0,R,10.0,N,V', b'\xff\xfe', b'999.0,270'):
         two.now += 1.0
-        two.wind._link.deliver(Message(line, 'stranger:1'))
-        two.wind._link.deliver(Message(FIRST, 'real:2'))
-        two.wind._link.deliver(Message(FIRST, 'real:2'))
+        two.wind.link.deliver(Message(line, 'stranger:1'))
+        two.wind.link.deliver(Message(FIRST, 'real:2'))
+        two.wind.link.deliver(Message(FIRST, 'real:2'))
     assert two.wind.accepted == 8
 
 
@@ -134,9 +134,9 @@ def test_a_flood_of_a_stranger_does_not_use_up_the_rate_of_the_first(two: Two) -
     two.begin()
     for _ in range(20):
         for _ in range(1000):
-            two.wind._link.deliver(Message(SECOND, 'stranger:1'))
+            two.wind.link.deliver(Message(SECOND, 'stranger:1'))
         two.now += 0.1
-        two.wind._link.deliver(Message(FIRST, 'real:2'))
+        two.wind.link.deliver(Message(FIRST, 'real:2'))
     assert two.wind.accepted == 22
     assert two.wind.refused == {'another sender, stranger:1': 20_000}
 
@@ -147,7 +147,7 @@ def test_senders_without_end_are_counted_in_few_words(two: Two, monkeypatch) -> 
     two.begin()
     said.clear()
     for k in range(1000):
-        two.wind._link.deliver(Message(SECOND, f'10.0.{k // 250}.{k % 250}:1'))
+        two.wind.link.deliver(Message(SECOND, f'10.0.{k // 250}.{k % 250}:1'))
     assert two.n_refused == 1000
     assert len(two.wind.refused) <= 21
     assert len(said) <= 20
@@ -182,7 +182,7 @@ def test_one_message_without_a_name_does_not_deafen_a_hub(monkeypatch: pytest.Mo
     unnamed = {'type': 'rapid_wind', 'ob': [1493322445, 5.3, 270]}
     named = Message(json.dumps({**unnamed, 'serial_number': 'ST-1'}).encode(), '10.0.0.5:50222')
     two.alternate(named, named, 2)
-    two.wind._link.deliver(Message(json.dumps(unnamed).encode(), '10.0.0.5:50222'))
+    two.wind.link.deliver(Message(json.dumps(unnamed).encode(), '10.0.0.5:50222'))
     two.alternate(named, named, 10)
     assert two.wind.accepted == 24
     assert two.n_refused == 1

@@ -38,13 +38,16 @@ class EveryOther:
         """Means of the slower and the faster ones [m/s], if the last window was such a one."""
         self._speeds: list[float] = []
 
-    def note(self, speed: float) -> None:
-        """Note the speed of the next message [m/s]."""
+    def note(self, speed: float) -> bool:
+        """Note the speed of the next message [m/s]; whether it tells of two for the first time."""
         self._speeds.append(speed)
-        if len(self._speeds) == _LENGTH:
-            self.means = _two_means(np.array(self._speeds))
-            self.total += _LENGTH * (self.means is not None)
-            self._speeds.clear()
+        if len(self._speeds) < _LENGTH:
+            return False
+        self.means = _two_means(np.array(self._speeds))
+        self._speeds.clear()
+        is_first = self.means is not None and not self.total
+        self.total += _LENGTH * (self.means is not None)
+        return is_first
 
     @property
     def problem(self) -> str:

@@ -87,10 +87,9 @@ class GustsAboutMean:
         """Return the wind at a time in [s], east, north, up in [m/s], the way the air goes."""
         mean = self._level(time)
         along, across, up = self._deviation * self._gusts[int(time * RATE) % len(self._gusts)]
-        level = math.hypot(mean[0], mean[1])
-        east, north = mean[:2] / level if level > 0.0 else (1.0, 0.0)
-        turned = np.array([along * east - across * north, along * north + across * east, up])
-        wind = mean + turned
+        level = complex(mean[0], mean[1])
+        turned = complex(along, across) * (level / abs(level) if level else 1.0)
+        wind = mean + np.array((turned.real, turned.imag, up))
         fast = max(float(np.linalg.norm(wind)) / FASTEST_WIND, 1.0)
         x, y, z = (wind / fast).tolist()
         return x, y, z
@@ -102,17 +101,16 @@ class GustsAboutMean:
 
     def _draw(self, speed: float, interval: float) -> None:
         """Draw the turbulence of a mean speed, unless the one there is near enough."""
-        drawn_speed, drawn_interval = self._drawn_for
-        is_near = drawn_speed / _NEAR < speed < drawn_speed * _NEAR
-        if is_near and interval == drawn_interval:
+        drawn, drawn_interval = self._drawn_for
+        if drawn / _NEAR < speed < drawn * _NEAR and interval == drawn_interval:
             return
         turbulence = Turbulence(speed, intensity=1.0 / speed)
         gusts = turbulence.record(_SAMPLES, RATE, np.random.default_rng(self._seed))
         length = min(max(round(interval * RATE), 1), _SAMPLES)
         first = np.arange(0, _SAMPLES - length + 1, length)
         count = len(first) * length
-        blocks = gusts[:count].reshape(len(first), length, 3)
-        blocks -= blocks.mean(axis=1, keepdims=True)
         self._gusts = gusts[:count]
+        blocks = self._gusts.reshape(len(first), length, 3)
+        blocks -= blocks.mean(axis=1, keepdims=True)
         self._largest = usual_gust(self._gusts[:, 0], first, RATE)
         self._drawn_for = speed, interval

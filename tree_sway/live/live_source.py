@@ -16,7 +16,8 @@ import time
 
 from tree_sway.errors import shown
 from tree_sway.live.one_sender import OneSender
-from tree_sway.live.transports.link import Link, LONGEST_PAUSE, Transport
+from tree_sway.live.source import Source
+from tree_sway.live.transports.link import Link, LONGEST_PAUSE
 from tree_sway.live.transports.transport import Message
 
 _LOOK = 0.5
@@ -32,14 +33,10 @@ class LiveSource(ABC):
 
     Parameters
     ----------
-    transport
-        Way in which its messages arrive.
+    source
+        Its transport, and the reader of its messages.
     log
         Function called with a line of news, from the source's thread.
-    messages
-        Word for its messages.
-    expects
-        Expected content of its messages.
     patience
         Time [s] in each state after which it is told why nothing comes; states without one are
         not told.
@@ -50,69 +47,59 @@ class LiveSource(ABC):
 
     def __init__(
         self,
-        transport: Transport,
+        source: Source,
         log: Callable[[str], None],
         *,
-        messages: str,
-        expects: str,
         patience: Mapping[str, float],
         silence: float | None = None,
         longest_pause: float = LONGEST_PAUSE,
     ) -> None:
         self.accepted = self.other = 0
         """Numbers of samples, and of messages that are about something else."""
+        self._source = source
         self._log = log
-        self._messages = messages
-        self._expects = expects
         self._patience = patience
         self._last = ''
+        self._expires = -math.inf  # time after which its newest sample no longer counts
         self._ended = threading.Event()
         self._senders = OneSender()
         self._followed = -math.inf
-        self._link = Link(
-            transport,
+        self.link = Link(
+            source.transport,
             self._receive,
             log,
             silence,
             longest_pause=longest_pause,
             admits=self._admits,
         )
-        self.refused = self._link.refused
+        """The connection, with its state and counts."""
+        self.refused = self.link.refused
         """Numbers of samples and messages that were refused, by cause."""
 
     def start(self) -> None:
         """Start to listen."""
         self._ended.clear()
-        self._link.start()
+        self.link.start()
         threading.Thread(target=self._watch, name='live source', daemon=True).start()
 
     def stop(self) -> None:
         """Stop; the thread ends by itself if it is busy."""
         self._ended.set()
-        self._link.stop()
-
-    @property
-    def link(self) -> Link:
-        """The connection, with its state and counts."""
-        return self._link
+        self.link.stop()
 
     @property
     def state(self) -> str:
         """State: ``connecting``, ``waiting``, ``unknown`` messages, ``live`` or ``stale``."""
         if self.accepted:
-            return 'live' if self._is_live() else 'stale'
-        if self._link.messages or self.refused:
+            return 'live' if time.monotonic() < self._expires else 'stale'
+        if self.link.messages or self.refused:
             return 'unknown'
-        return 'waiting' if self._link.is_up else 'connecting'
+        return 'waiting' if self.link.is_up else 'connecting'
 
     @property
     @abstractmethod
     def problem(self) -> str:
         """Why nothing comes of it; empty if something does."""
-
-    @abstractmethod
-    def _is_live(self) -> bool:
-        """Whether its newest sample still counts."""
 
     @abstractmethod
     def _take(self, message: Message) -> None:
@@ -129,7 +116,7 @@ class LiveSource(ABC):
             self._followed = now
             return True
         cause = f'another sender, {shown(sender, _SHOWN_LETTERS)}'
-        if self._link.refuse(cause):
+        if self.link.refuse(cause):
             self._log(f'refused: {cause}, until {self._senders.current} is silent')
         return False
 
@@ -150,23 +137,22 @@ class LiveSource(ABC):
             return ''
         return f', {sum(self.refused.values())} refused: {next(iter(self.refused))}'
 
-    def _refuse(self, cause: str, count: int = 1) -> None:
-        self._link.refuse(cause, count)
-
     def _why_nothing(self) -> str:
         """Why no sample was accepted so far."""
-        link = self._link
+        link = self.link
         if not link.is_up:
             return f'no connection to {link.transport}: {link.failure or "not yet"}'
         if not link.messages and not self.refused:
             return f'listening to {link.transport}: nothing has come yet'
         number = max(link.messages, sum(self.refused.values()))
-        came = f'{number} {self._messages} came'
+        came = f'{number} {self._source.messages} came'
         if self.refused:
             causes = ', '.join(list(self.refused)[:_SHOWN_CAUSES])
             last = f'; the last: {self._last}' if self._last else ''
             return f'{came}, all were refused: {causes}{last}'
-        return f'{came}, none was understood, the last: {self._last}; expected {self._expects}'
+        return (
+            f'{came}, none was understood, the last: {self._last}; expected {self._source.expects}'
+        )
 
     def _watch(self) -> None:
         """Tell once why nothing comes, as soon as it is known, until it does."""

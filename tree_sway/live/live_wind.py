@@ -20,11 +20,11 @@ import time
 import numpy as np
 
 from tree_sway.core.wind import is_wind
-from tree_sway.files.wind import Velocity
+from tree_sway.files.wind import Refusal, Velocity, WindReading
 from tree_sway.live.every_other import EveryOther
 from tree_sway.live.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.live.live_source import LiveSource
-from tree_sway.live.reading import Refusal, WindReading
+from tree_sway.live.recent import RecentSamples
 from tree_sway.live.registry import OpenedSource
 from tree_sway.live.transports.transport import Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
@@ -79,15 +79,7 @@ class LiveWind(LiveSource):
         heard: Callable[[WindReading], None] | None = None,
         silence: float | None = None,
     ) -> None:
-        source = opened.source
-        super().__init__(
-            source.transport,
-            log,
-            messages=source.messages,
-            expects=source.expects,
-            patience=_PATIENCE,
-            silence=silence,
-        )
+        super().__init__(opened.source, log, patience=_PATIENCE, silence=silence)
         self.bearing = opened.bearing
         """Direction that a wind without one comes from, clockwise from north [rad]."""
         self.newest: WindReading | None = None
@@ -103,10 +95,9 @@ class LiveWind(LiveSource):
         self._heard = heard
         self._lock = threading.Lock()
         self._gusts = GustsAboutMean()
-        self._samples: deque[Sample] = deque(maxlen=_QUEUE)
+        self._samples = RecentSamples[Sample](_QUEUE)
         self._arrival = -math.inf
         self._gaps: deque[float] = deque(maxlen=_GAPS)
-        self._expires = -math.inf
         self._blown = -math.inf
         self._is_guess = False
         """Whether the next reading will tell if the newest is a mean."""
@@ -129,10 +120,7 @@ class LiveWind(LiveSource):
     def name(self) -> str:
         """Name of the source for viewers."""
         place = self.newest.place if self.newest is not None else ''
-        return f'{place}, {self._opened.name}' if place else self._opened.name
-
-    def _is_live(self) -> bool:
-        return time.monotonic() < self._expires
+        return ', '.join(filter(None, (place, self._opened.name)))
 
     @property
     def age(self) -> float:
@@ -167,9 +155,7 @@ class LiveWind(LiveSource):
 
     def drain(self) -> list[Sample]:
         """Return the samples since the last call, by the times of `time.monotonic`."""
-        found = list[Sample]()
-        while self._samples:
-            found.append(self._samples.popleft())
+        found = self._samples.drain()
         now = time.monotonic()
         with self._lock:
             until = min(now, self._expires)
@@ -200,49 +186,41 @@ class LiveWind(LiveSource):
 
     def _take(self, message: Message) -> None:
         """Read a message; called by the link's thread."""
-        readings = self._opened.source.read(message)
+        readings = self._source.read(message)
         self.other += not readings
         for reading in readings:
-            if not self._is_good(reading, message.origin):
+            if isinstance(reading, WindReading) and is_wind(reading.speed, reading.up, 0.0):
+                if self._follows(' '.join(filter(None, (message.origin, reading.sender)))):
+                    self.accepted += 1
+                    self._use(reading)
                 continue
-            assert isinstance(reading, WindReading)
-            self._use(reading)
-
-    def _is_good(self, reading: object, origin: str) -> bool:
-        """Count a reading; whether it is a wind of the sender that is followed."""
-        cause = reading.reason if isinstance(reading, Refusal) else ''
-        if isinstance(reading, WindReading) and not is_wind(reading.speed, reading.up, 0.0):
             cause = 'speed is too fast or no number'
-        if cause:
-            if self._link.refuse(cause) and self.accepted:
+            if isinstance(reading, Refusal):
+                cause = reading.reason
+            if self.link.refuse(cause) and self.accepted:
                 self._log(f'{self._opened.name}: refused, and counted: {cause}')
-            return False
-        sender = reading.sender if isinstance(reading, WindReading) else ''
-        if not self._follows(' '.join(filter(None, (origin, sender)))):
-            return False
-        self.accepted += 1
-        return True
 
     def _use(self, reading: WindReading) -> None:
         now = time.monotonic()
         is_first = self.newest is None
-        is_guess = self._is_guess
+        was_guess = self._is_guess
         if not is_first:
             self._gaps.append(now - self._arrival)
-        self._arrival = now
         period = self._period
         interval = self._interval(reading, period)
         velocity = reading.velocity(self.bearing)
         with self._lock:
+            self._arrival = now
             self.newest = reading
             self.lacks_direction = reading.bearing is None
             self.interval = interval
             if self.is_mean:
-                self._gusts.set(now, np.array(velocity), interval, _gust(reading))
+                has_gust = is_wind(reading.gust or 0.0, 0.0, 0.0)
+                gust = reading.gust if has_gust else None
+                self._gusts.set(now, np.array(velocity), interval, gust)
                 self._blown = max(self._blown, now - 1.0 / RATE)
-                lasts = self._opened.source.lasts
-                age = 0.0 if reading.time is None else max(time.time() - reading.time, 0.0)
-                self._expires = now - age + (_LASTS * interval if lasts is None else lasts)
+                lasts = self._source.lasts
+                self._expires = now - self.age + (_LASTS * interval if lasts is None else lasts)
             else:
                 self._expires = now + max(_LIVE_FOR, _LASTS * (period or 0.0))
         if self._heard is not None:
@@ -250,18 +228,16 @@ class LiveWind(LiveSource):
         if is_first:
             text = described(reading, self.bearing)
             self._log(f'wind comes: {text}; {self._gusts_text(reading)}')
-        elif is_guess:
+        elif was_guess:
             self._log(f'{self._opened.name}: {self._gusts_text(reading)}')
-        total = self.every_other.total
-        self.every_other.note(reading.speed)
-        if self.every_other.total and not total:
+        if self.every_other.note(reading.speed):
             self._log(f'{self._opened.name}: {self.every_other.problem}')
         if self.is_mean:
             return
         if self._taken is not None:
             self._taken(velocity)
         else:
-            self._samples.append((now, velocity))
+            self._samples.add(now, (now, velocity))
 
     @property
     def _period(self) -> float | None:
@@ -273,14 +249,11 @@ class LiveWind(LiveSource):
 
     def _interval(self, reading: WindReading, period: float | None) -> float:
         """Length of the mean that a reading is [s]; 0 for the wind of an instant."""
-        self._is_guess = False
-        for known in (self._opened.mean, reading.interval, self._opened.source.interval):
-            if known is not None:
-                return known
-        self._is_guess = period is None
-        if period is None:
-            return _USUAL_INTERVAL
-        return period if period >= LEAST_INTERVAL else 0.0
+        stated = (self._opened.mean, reading.interval, self._source.interval)
+        known = [each for each in stated if each is not None]
+        self._is_guess = not known and period is None
+        usual = _USUAL_INTERVAL if period is None else period
+        return [*known, usual if usual >= LEAST_INTERVAL else 0.0][0]
 
     def _gusts_text(self, reading: WindReading) -> str:
         """Return what is known about the gusts of a reading, as words."""
@@ -293,11 +266,6 @@ class LiveWind(LiveSource):
         interval = self.interval
         length = f'{interval / 60.0:.3g} min' if interval >= 60.0 else f'{interval:.3g} s'
         return f'a mean over {length}: {gusts}'
-
-
-def _gust(reading: WindReading) -> float | None:
-    gust = reading.gust
-    return gust if gust is not None and is_wind(gust, 0.0, 0.0) else None
 
 
 def described(reading: WindReading, bearing: float) -> str:

@@ -54,7 +54,9 @@ class OneSender:
         if origin != self.current:
             own = 0.0 if before is None else _PERIODS * (now - before)
             if self._gaps and now - self._newest <= max(self.patience, own):
-                self._refuse(origin)
+                self.total_refused += 1
+                if origin in self.refused or len(self.refused) < _MOST:
+                    self.refused[origin] = self.refused.get(origin, 0) + 1
                 return False
             self.current = origin
             self._gaps.clear()
@@ -89,8 +91,3 @@ class OneSender:
             f'{self.total_refused} messages of another sender ({others[-1]}{more}) were refused, '
             f'{self.current} is followed: give each an address of its own'
         )
-
-    def _refuse(self, origin: str) -> None:
-        self.total_refused += 1
-        if origin in self.refused or len(self.refused) < _MOST:
-            self.refused[origin] = self.refused.get(origin, 0) + 1

@@ -7,8 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from tree_sway.files.wind import Reading
 from tree_sway.live.motion.motion_reading import MotionReading
-from tree_sway.live.reading import Reading
 from tree_sway.live.transports.link import Transport
 from tree_sway.live.transports.transport import Message
 

@@ -60,15 +60,16 @@ class SourceAddress:
         """Host, maybe empty."""
         return self.parts.hostname or ''
 
-    def port(self, default: int | None = None) -> int:
-        """Port; a `ParameterError` without one and without a default."""
+    def port(self, default: int = 0, cure: str = '') -> int:
+        """Port, which may be all of the place; a `ParameterError` without one or a default."""
+        is_port = not self.parts.netloc and self.place.isdecimal()
         try:
-            port = self.parts.port
+            port = int(self.place) if is_port else self.parts.port
         except ValueError:
             port = 0
         port = default if port is None else port
-        if port is None or not 0 < port < 65_536:
-            raise self.error('a port from 1 to 65535 is missing')
+        if not 0 < port < 65_536:
+            raise self.error('a port from 1 to 65535 is missing', cure)
         return port
 
     def text_of(self, name: str, default: str = '') -> str:
@@ -99,6 +100,10 @@ class SourceAddress:
             raise self.error(f"{name} is '{text}', not a whole number from {low} to {high}")
         return value
 
+    def silence(self, default: float = 10.0) -> float:
+        """Return the option ``silence``: without a message for so long, it is opened again [s]."""
+        return self.number('silence', default, 0.1, 86_400.0)
+
     def angle(self, name: str, default: float = 0.0) -> float:
         """Return an option in degrees, of a name that ends so, as [rad]."""
         return math.radians(self.number(name, math.degrees(default), -360.0, 360.0))
@@ -113,6 +118,11 @@ class SourceAddress:
         except (OSError, ValueError) as error:
             reason = getattr(error, 'strerror', None) or 'it is no text'
             raise FormatError(f'not readable: {reason}', where=f'{name}={path}') from None
+
+    def headers(self) -> dict[str, str]:
+        """Return the header with the token in the file ``token_file``; none without that."""
+        token = self.secret('token_file')
+        return {'Authorization': f'Bearer {token}'} if token else {}
 
     def refuse_others(self) -> None:
         """Raise a `ParameterError` for an option that the source does not have."""

@@ -12,10 +12,10 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from tree_sway.files.wind import WindReading
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.live.commands.record_clock import RecordClock
 from tree_sway.live.commands.wind_recording import WindTable
-from tree_sway.live.reading import WindReading
 
 NOON = 1_800_000_000.0
 STEPS = [0.0, 0.0, -3600.0, -3600.0, 60.0, 60.0]

@@ -14,12 +14,12 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import ParameterError
+from tree_sway.files.wind import Refusal
 from tree_sway.live.motion.live_motion import LiveMotion
 from tree_sway.live.motion.motion_json import read_motion_json
 from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.motion.motion_registry import open_motion
 from tree_sway.live.motion.sender_clock import SenderClock
-from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.transport import Message
 
 FORCE, SPIN = (0.1, -0.2, 9.8), (0.01, 0.02, 0.03)
@@ -257,7 +257,7 @@ def test_too_few_samples_are_told_with_the_cure() -> None:
     live = LiveMotion(open_motion('udp:5006'), print)
     for k in range(60):
         live._take(Message(json.dumps({'acc': [0, 0, 9.8]}).encode()))
-        live._arrivals[-1] = 0.5 * k
+        live._samples._times[-1] = 0.5 * k
     assert 'set 20 or more' in live.problem
 
 

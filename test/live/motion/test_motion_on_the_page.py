@@ -29,8 +29,9 @@ from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.live import Sighting  # noqa: E402
 from tree_sway.live.motion import motion_feed  # noqa: E402
-from tree_sway.live.motion.live_motion import LiveMotion, MotionSample  # noqa: E402
+from tree_sway.live.motion.live_motion import LiveMotion  # noqa: E402
 from tree_sway.live.motion.motion_feed import MotionFeed, PlacedSensor  # noqa: E402
+from tree_sway.live.motion.motion_reading import MotionReading  # noqa: E402
 from tree_sway.live.motion.motion_registry import open_motion  # noqa: E402
 from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
@@ -87,14 +88,14 @@ class Sensor:
         self.ends_at = np.inf
         self.left_out = 0
 
-    def drain(self, until: float = np.inf) -> list[MotionSample]:
+    def drain(self, until: float = np.inf) -> list[MotionReading]:
         """Return what was measured until then and came up to now, 40 ms late."""
         found = []
         end = min(self.now - 0.04, until) - BEGAN
         while self._left and self._left[0][0] <= end:
             at, force, spin = self._left.pop(0)
             if at < self.ends_at:
-                found.append(MotionSample(BEGAN + at, tuple(force), tuple(spin), None))
+                found.append(MotionReading(BEGAN + at, tuple(force), tuple(spin), None))
         return found
 
 

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Packets of MQTT: of a real broker, too large, broken."""
 
-from collections.abc import Callable, Iterator, Sequence
+import asyncio
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 import random
 import shutil
@@ -15,7 +16,7 @@ import tracemalloc
 
 import pytest
 
-from tree_sway.live.transports.mqtt import _packet, _Packets, _text, Mqtt
+from tree_sway.live.transports.mqtt import _packet, _text, Mqtt, next_packet
 
 HELD = b'\x20\x02\x00\x00'  # CONNACK
 GRANTED = b'\x90\x03\x00\x01\x00'  # SUBACK
@@ -41,26 +42,51 @@ def answering(server: socket.socket) -> Iterator[Callable[..., None]]:
         link.close()
 
 
+def packets_of(blocks: Iterable[bytes]) -> list[tuple[int, bytes]]:
+    """Read packets until the end of some blocks; each block comes when those before are read."""
+    found: list[tuple[int, bytes]] = []
+
+    async def read(reader: asyncio.StreamReader) -> None:
+        with suppress(asyncio.IncompleteReadError):
+            while True:
+                found.append(await next_packet(reader, lambda _cause: None))
+
+    async def run() -> None:
+        reader = asyncio.StreamReader()
+        reading = asyncio.create_task(read(reader))
+        for block in blocks:
+            reader.feed_data(block)
+            await asyncio.sleep(0.0)
+        reader.feed_eof()
+        await reading
+
+    asyncio.run(run())
+    return found
+
+
 def test_packets_are_cut_at_any_byte() -> None:
     rng = random.Random(3)
     bodies = [rng.randbytes(rng.choice([0, 3, 127, 128, 20_000])) for _ in range(50)]
     data = b''.join(_packet(0x30, body) for body in bodies)
-    packets, found, place = _Packets(int), [], 0
+    blocks, place = [], 0
     while place < len(data):
         size = rng.choice([1, 2, 5, 1000, 65_536])
-        found += [body for _, body in packets.feed(data[place : place + size])]
+        blocks.append(data[place : place + size])
         place += size
-    assert found == bodies
+    assert packets_of(blocks) == [(3, body) for body in bodies]
 
 
 def test_a_message_of_256_mib_takes_no_memory() -> None:
-    packets = _Packets(int)
     block = bytes(65_536)
+
+    def blocks() -> Iterator[bytes]:
+        yield b'\x30\xff\xff\xff\x7f'  # 268,435,455 bytes follow
+        for _ in range(4095):
+            yield block
+        yield block[:-1] + publish('wind', b'5')
+
     tracemalloc.start()
-    found = list(packets.feed(b'\x30\xff\xff\xff\x7f'))  # 268,435,455 bytes follow
-    for _ in range(4095):
-        found += packets.feed(block)
-    found += packets.feed(block[:-1] + publish('wind', b'5'))
+    found = packets_of(blocks())
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert found == [(3, _text('wind') + b'5')]
@@ -97,13 +123,30 @@ def test_a_refusal_of_a_broker_is_told(hear, server, answering, answer: bytes, s
 @pytest.mark.parametrize('seed', range(30))
 def test_no_bytes_break_the_reader_of_packets(seed: int) -> None:
     rng = random.Random(seed)
-    packets = _Packets(int)
-    try:
-        for _ in range(200):
-            for _, body in packets.feed(rng.randbytes(rng.randrange(300))):
-                assert len(body) <= 65_536
-    except ConnectionError:
-        return
+    with suppress(ConnectionError):
+        found = packets_of(rng.randbytes(rng.randrange(300)) for _ in range(200))
+        assert all(len(body) <= 65_536 for _, body in found)
+
+
+@pytest.mark.parametrize(
+    ('user', 'password', 'flags', 'given'),
+    [
+        ('', '', 0x02, ''),
+        ('tree', '', 0x82, 'tree'),
+        ('tree', 'oak', 0xC2, 'tree oak'),
+        ('', 'oak', 0x02, ''),  # a password without a user is none (3.1.2.9)
+    ],
+)
+def test_user_and_password_are_given(
+    hear, server, user: str, password: str, flags: int, given: str
+) -> None:
+    hear(Mqtt('127.0.0.1', ('wind',), server.getsockname()[1], user, password))
+    expected = struct.pack('>BBH', 4, flags, 20) + b''.join(map(_text, ['', *given.split()]))
+    link, _ = server.accept()
+    with link:
+        link.settimeout(10.0)
+        asked = link.recv(200)
+    assert asked == _packet(0x10, _text('MQTT') + expected)
 
 
 @pytest.fixture

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Iterator
 import time
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 from tree_sway.errors import ParameterError
 from tree_sway.live.camera.camera_view import CameraView, opencv
 from tree_sway.live.camera.point_tracker import Sighting
+from tree_sway.live.recent import RecentSamples
 from tree_sway.twin.camera import Camera
 from tree_sway.worker import Worker
 
@@ -97,34 +97,16 @@ class Film:
         self._capture.release()
 
 
-class FilmPoints:
-    """Points of the newest pictures of a camera."""
+class FilmPoints(RecentSamples[Sighting]):
+    """Points of the newest pictures of a camera, and the rate of these."""
 
     def __init__(self, name: str, log: Callable[[str], None]) -> None:
+        super().__init__(_KEPT, _COUNTED)
         self.name, self._log = name, log
         self.camera: Camera | None = None
         """Where it stands; None before that is known."""
         self.refused = 0
         """Messages that were refused before they told a picture."""
-        self._sightings: deque[Sighting] = deque(maxlen=_KEPT)
-        self._times: deque[float] = deque(maxlen=_COUNTED)
-
-    @property
-    def rate(self) -> float:
-        """Pictures per second [Hz]; 0 before two of them."""
-        times = list(self._times)
-        return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 0.0
-
-    def drain(self) -> list[Sighting]:
-        """Return what was seen since the last call; times are those of `time.monotonic`."""
-        found = list[Sighting]()
-        while self._sightings:
-            found.append(self._sightings.popleft())
-        return found
-
-    def _add(self, seen: Sighting) -> None:
-        self._times.append(seen.time)
-        self._sightings.append(seen)
 
 
 class LiveFilm(FilmPoints, Worker):
@@ -147,7 +129,7 @@ class LiveFilm(FilmPoints, Worker):
                     self._say('')
                     seen = self.view.follow(at, picture)
                     self.camera = self.view.camera
-                    self._add(seen)
+                    self.add(seen.time, seen)
                     continue
                 self._say('no picture comes: check the camera and its connection')
                 self._stopping.wait(_AGAIN)

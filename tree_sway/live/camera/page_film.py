@@ -101,10 +101,10 @@ class PageFilm(FilmPoints):
         """Return None: what a page films does not leave it."""
         return None
 
-    def drain(self) -> list[Sighting]:
+    def drain(self, until: float = math.inf) -> list[Sighting]:
         """Return what was seen since the last call, and take the camera that it belongs to."""
         number, self.camera = self._placed
-        return [each for each in super().drain() if each.reference == number]
+        return [each for each in super().drain(until) if each.reference == number]
 
     def take(self, page: object, message: Any, answer: Answer) -> str | None:
         """
@@ -157,7 +157,7 @@ class PageFilm(FilmPoints):
         is_other = self._seen.reference == number and len(self._seen.points) != len(points)
         if is_ours and not is_other and self._clock.note(stamp, now):
             self._seen = Sighting(self._clock.local(stamp) - self._late, number, points)
-            self._add(self._seen)
+            self.add(self._seen.time, self._seen)
         else:
             self.refused += 1
         return None

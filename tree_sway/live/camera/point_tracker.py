@@ -44,6 +44,7 @@ _LONG = 10.0
 """Time in [s] for which most must be lost before points are found anew."""
 _EDGE = 60
 """Margin in pixels about the mask."""
+_NO_POINTS = np.zeros((0, 1, 2), dtype=np.float32)
 
 
 class Sighting(NamedTuple):
@@ -72,18 +73,16 @@ class PointTracker:
         self._cv2, self._mask = cv2, mask
         self._reference = -1
         self._first: Any = None
-        self._found = self._last = np.zeros((0, 1, 2), dtype=np.float32)
+        self._found = self._last = _NO_POINTS
         self._good_at = 0.0
         self._part: tuple[slice, ...] = (slice(None), slice(None))
         self._corner = np.zeros(2)
         if mask is not None and mask.any():
-            used = [np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0)]
-            low = [max(int(each[0]) - _EDGE, 0) for each in used]
-            self._part = tuple(
-                slice(first, int(each[-1]) + _EDGE) for first, each in zip(low, used, strict=True)
-            )
+            x, y, wide, high = cv2.boundingRect(mask)
+            left, top = max(x - _EDGE, 0), max(y - _EDGE, 0)
+            self._part = slice(top, y + high + _EDGE), slice(left, x + wide + _EDGE)
             self._mask = mask[self._part]
-            self._corner = np.array(low[::-1], dtype=np.float64)
+            self._corner = np.array((left, top), dtype=np.float64)
         ends = cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT
         self._flow = {
             'winSize': _WINDOW,
@@ -118,17 +117,16 @@ class PointTracker:
 
     def _begin(self, time: float, grey: Any) -> Sighting:
         """Find points, and follow them from here."""
-        found = self._cv2.goodFeaturesToTrack(
-            grey, _MOST_POINTS, _QUALITY, _APART, mask=self._mask
-        )
-        self._found = np.zeros((0, 1, 2), dtype=np.float32) if found is None else found
+
+        def features(most: int, apart: int, mask: Any) -> Any:
+            found = self._cv2.goodFeaturesToTrack(grey, most, _QUALITY, apart, mask=mask)
+            return _NO_POINTS if found is None else found
+
+        self._found = features(_MOST_POINTS, _APART, self._mask)
         if self._mask is not None and len(self._found):
             near = self._cv2.dilate(self._mask, np.ones((2 * _AWAY + 1, 2 * _AWAY + 1), np.uint8))
-            behind = self._cv2.goodFeaturesToTrack(
-                grey, _MOST_BEHIND, _QUALITY, _BEHIND_APART, mask=255 - near
-            )
-            if behind is not None:
-                self._found = np.concatenate([self._found, behind])
+            behind = features(_MOST_BEHIND, _BEHIND_APART, 255 - near)
+            self._found = np.concatenate([self._found, behind])
         self._last, self._good_at = self._found, time
         self._first = grey if len(self._found) else None
         self._reference += 1

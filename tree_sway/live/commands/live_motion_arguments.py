@@ -16,7 +16,7 @@ from tree_sway.live.commands.sensor_places import add_place_argument, sensors_an
 
 if TYPE_CHECKING:
     from tree_sway.live import MotionFeed
-    from tree_sway.live.motion.live_motion import MotionSample
+    from tree_sway.live.motion.motion_reading import MotionReading
 
 
 def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,7 +32,7 @@ def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def sensing(
-    arguments: argparse.Namespace, heard: Sequence[Callable[[MotionSample], None]] = ()
+    arguments: argparse.Namespace, heard: Sequence[Callable[[MotionReading], None]] = ()
 ) -> Iterator[MotionFeed]:
     """
     Listen to the sensors of ``--motion``, and end at once.
@@ -55,20 +55,21 @@ def sensing(
     from tree_sway.live.motion.motion_feed import PlacedSensor
 
     say_motion = partial(say, kind='motion')
-    placed = []
-    addresses = set[str]()
-    for number, (url, at) in enumerate(sensors_and_places(arguments)):
-        opened = open_motion(url)
-        address = str(opened.source.transport)
-        if address in addresses:
+    places = sensors_and_places(arguments)
+    sources = [open_motion(url) for url, _ in places]
+    addresses = [str(each.transport) for each in sources]
+    for address in addresses:
+        if addresses.count(address) > 1:
             raise ParameterError(
                 f'two sensors at {address}',
                 where='--motion',
                 cure='a sensor has one place: give each its own port, host or topic',
             )
-        addresses.add(address)
-        tell = heard[number] if heard else None
-        placed.append(PlacedSensor(LiveMotion(opened, say_motion, heard=tell), at))
+    tells = heard or [None] * len(sources)
+    placed = [
+        PlacedSensor(LiveMotion(source, say_motion, heard=tell), at)
+        for source, tell, (_, at) in zip(sources, tells, places, strict=True)
+    ]
     feed = MotionFeed(placed)
     if len(feed.sensors) < len(placed):
         raise ParameterError(

@@ -18,8 +18,8 @@ from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files.wind import WindRecord
 
 if TYPE_CHECKING:
+    from tree_sway.files.wind import WindReading
     from tree_sway.live import LiveWind
-    from tree_sway.live.reading import WindReading
 
 HELP = (
     'live wind instead: udp:PORT, tcp://host:port, serial:/dev/ttyUSB0:4800, modbus:DEVICE, '
@@ -65,7 +65,7 @@ def listening(
         wind.stop()
 
 
-def _wait_for_wind(wind: LiveWind, patience: float = _PATIENCE) -> None:
+def _wait_for_wind(wind: LiveWind) -> None:
     """
     Wait for the first reading.
 
@@ -76,7 +76,7 @@ def _wait_for_wind(wind: LiveWind, patience: float = _PATIENCE) -> None:
     began = time.monotonic()
     say(f'waiting for {wind.link.transport}; Ctrl-C ends it')
     while wind.newest is None:
-        limit = patience if wind.link.connections else min(patience, _UNREACHED)
+        limit = _PATIENCE if wind.link.connections else _UNREACHED
         if time.monotonic() > began + limit:
             raise TransportError(f'no wind within {limit:g} s: {wind.problem}', where='--sensor')
         pause.wait(_LOOK)
@@ -104,8 +104,7 @@ def live_record(arguments: argparse.Namespace, seconds: float) -> WindRecord:
         raise TransportError(
             f'{len(samples)} samples within {seconds:g} s', where='--sensor', cure='wait longer'
         )
-    times = np.array([time for time, _ in samples])
-    velocity = np.array([velocity for _, velocity in samples])
+    times, velocity = map(np.array, zip(*samples, strict=True))
     rising = np.concatenate([[True], np.diff(np.maximum.accumulate(times)) > 0.0])
     note = f'{name}, {int(rising.sum())} samples{refused}'
     return WindRecord(times[rising] - times[0], velocity[rising], name, notes=(note,))

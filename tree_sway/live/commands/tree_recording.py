@@ -28,7 +28,7 @@ from tree_sway.live.commands.wind_recording import WindTable
 from tree_sway.twin import place_on
 
 if TYPE_CHECKING:
-    from tree_sway.live.motion.live_motion import MotionSample
+    from tree_sway.live.motion.motion_reading import MotionReading
 
 _COLUMNS = {
     'acceleration': ('ax [m/s^2]', 'ay [m/s^2]', 'az [m/s^2]'),
@@ -72,31 +72,30 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
     for at in arguments.at:
         with inside('--at'):
             place_on(opened.tree, at)
-    tables = [MotionTable() for _ in arguments.motion]
+    names = [f'motion_{number}.csv' for number, _ in enumerate(arguments.motion, 1)]
+    tables = [MotionTable(folder / name) for name in names]
+    wind_table = WindTable(folder / 'wind.csv')
+    every: list[RowFile] = [wind_table, *tables]
     end = time.monotonic() + seconds
     with sensing(arguments, heard=[each.take for each in tables]) as feed:
         folder.mkdir(parents=True, exist_ok=True)
         write_tree(folder / 'tree.yaml', opened)
+        sensors = feed.sensors.values()
         placed = [
-            RecordedSensor(f'motion_{number}.csv', each.at, each.live.name)
-            for number, each in enumerate(feed.sensors.values(), 1)
+            RecordedSensor(name, each.at, each.live.name)
+            for name, each in zip(names, sensors, strict=True)
         ]
         sheet = TreeRecord(folder, 'tree.yaml', 'wind.csv', placed, wind_source=arguments.sensor)
         write_tree_record(sheet)
-        for table, sensor in zip(tables, placed, strict=True):
-            table.rows = RowFile(folder / sensor.file)
-        wind_table = WindTable(folder / 'wind.csv')
         with listening(arguments, heard=wind_table.take) as wind:
             wind_table.wind = wind
-            wait(end, lambda: _has_failed(wind_table, tables))
+            wait(end, lambda: any(each.failure for each in every))
             wind_problem = wind.problem
-        problems = [each.live.problem for each in feed.sensors.values()]
-    wind_table.close()
-    for table in tables:
+        problems = [each.live.problem for each in sensors]
+    for table in every:
         table.close()
-    came = [
-        (sensor, table.count) for sensor, table in zip(placed, tables, strict=True) if table.count
-    ]
+    counts = [table.count for table in tables]
+    came = [(sensor, count) for sensor, count in zip(placed, counts, strict=True) if count]
     heard = [sensor for sensor, _ in came]
     write_tree_record(sheet._replace(motion=heard, wind_source=wind.name))
     for sensor, problem in zip(placed, problems, strict=True):
@@ -106,49 +105,34 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
         raise TransportError(wind_problem or 'no wind came', where='--sensor')
     if not came:
         raise TransportError('; '.join(problems) or 'no motion came', where='--motion')
-    for rows_of in (wind_table.rows, *(each.rows for each in tables)):
-        if rows_of is not None and rows_of.count:
-            rows_of.say_short(seconds)
+    for table in every:
+        if table.count:
+            table.say_short(seconds)
     rows = ', '.join(f'{count} samples of {each.source} at {each.at}' for each, count in came)
     print(f'{folder}: {wind_table.count} rows of wind of {wind.name}, {rows}')
     return 0
 
 
-def _has_failed(wind: WindTable, motion: list[MotionTable]) -> bool:
-    """Whether a row could not be written, as the disk is full."""
-    return bool(wind.rows.failure) or any(each.rows and each.rows.failure for each in motion)
-
-
-class MotionTable:
+class MotionTable(RowFile):
     """Table of a motion sensor; its first sample decides on the columns."""
 
-    def __init__(self) -> None:
-        self.rows: RowFile | None = None
-        """The file; None while its folder is being made."""
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self._folder = path.parent
         self._clock = RecordClock()
         self._names: tuple[str, ...] = ()
 
-    @property
-    def count(self) -> int:
-        """Number of rows on the disk."""
-        return self.rows.count if self.rows else 0
-
-    def take(self, sample: MotionSample) -> None:
-        """Write a sample; called by the sensor's thread."""
-        if self.rows is None:
+    def take(self, sample: MotionReading) -> None:
+        """Write a sample, once there is its folder; called by the sensor's thread."""
+        if not self._folder.is_dir():
             return
         if not self._names:
             self._names = tuple(name for name in _COLUMNS if getattr(sample, name) is not None)
         columns = [column for name in self._names for column in _COLUMNS[name]]
-        date = iso_date(self._clock.date(sample.time), 'microseconds')
+        date = iso_date(self._clock.date(sample.time or time.monotonic()), 'microseconds')
         cells = [
             f'{value:.9g}'
             for name in self._names
             for value in (getattr(sample, name) or [float('nan')] * len(_COLUMNS[name]))
         ]
-        self.rows.write(['time', *columns], [date, *cells])
-
-    def close(self) -> None:
-        """Close the file; a `FormatError` if a row could not be written."""
-        if self.rows is not None:
-            self.rows.close()
+        self.write(['time', *columns], [date, *cells])

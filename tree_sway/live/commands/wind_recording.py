@@ -17,10 +17,10 @@ import time
 from tree_sway.commands import refuse_overwriting, RowFile
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files import refuse_unwritable
+from tree_sway.files.wind import WindReading
 from tree_sway.live import LiveWind
 from tree_sway.live.commands.record_clock import iso_date, RecordClock, wait
 from tree_sway.live.commands.sensor_arguments import listening
-from tree_sway.live.reading import WindReading
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
 _INSTANTS = ('time', 'u [m/s]', 'v [m/s]', 'w [m/s]')
@@ -52,69 +52,57 @@ def record_wind(arguments: argparse.Namespace, seconds: float) -> int:
     table = WindTable(path)
     with listening(arguments, heard=table.take) as wind:
         table.wind = wind
-        wait(end, lambda: bool(table.rows.failure))
+        wait(end, lambda: bool(table.failure))
         problem = wind.problem
     table.close()
     if not table.count:
         raise TransportError(problem or 'no wind came', where='--sensor')
-    table.rows.say_short(seconds)
+    table.say_short(seconds)
     kind = 'means' if table.is_of_means else 'samples'
     print(f'{path}: {table.count} {kind} of {wind.name}{wind.refused_text}')
     return 0
 
 
-class WindTable:
+class WindTable(RowFile):
     """Table of readings; the second one decides whether they are means."""
 
-    def __init__(self, path: Path) -> None:
-        self.rows = RowFile(path)
-        self.is_of_means = False
-        self.wind: LiveWind | None = None
-        self._first: tuple[float, WindReading] | None = None
-        self._before: WindReading | None = None
-        self._clock = RecordClock()
+    wind: LiveWind
+    """Their source, from its start on."""
 
-    @property
-    def count(self) -> int:
-        """Number of rows on the disk."""
-        return self.rows.count
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self.is_of_means = False
+        self._waiting: list[tuple[float, WindReading]] = []
+        self._before: float | None = None
+        self._clock = RecordClock()
 
     def take(self, reading: WindReading) -> None:
         """Write a reading; called by the source's thread."""
-        before = self._before
-        self._before = reading
-        if reading.time is not None and before is not None and reading.time == before.time:
+        if reading.time is not None and reading.time == self._before:
             return  # a report that is requested again
-        row = reading.time or self._clock.date(time.monotonic()), reading
-        if self._first is None and not self.count:
-            self._first = row
-            self.rows.hold()
-            return
-        if self._first is not None:
-            self._begin(self._first)
-        self._write(row)
+        self._before = reading.time
+        self._waiting.append((reading.time or self._clock.date(time.monotonic()), reading))
+        if self.count or len(self._waiting) > 1:
+            self._write_waiting()
+        else:
+            self.hold()
 
     def close(self) -> None:
         """Write a single reading; a `FormatError` if a row could not be written."""
-        if self._first is not None:
-            self._begin(self._first)
-        self.rows.close()
+        self._write_waiting()
+        super().close()
 
-    def _begin(self, first: tuple[float, WindReading]) -> None:
-        self._first = None
-        assert self.wind is not None
-        self.is_of_means = self.wind.interval >= LEAST_INTERVAL
-        self._write(first)
-
-    def _write(self, row: tuple[float, WindReading]) -> None:
-        stamp, reading = row
-        assert self.wind is not None
-        if self.is_of_means:
-            used = self.wind.bearing if reading.bearing is None else reading.bearing
-            gust = '' if reading.gust is None else f'{reading.gust:.3f}'
-            degrees = f'{math.degrees(used) % 360.0:.1f}'
-            cells = [f'{reading.speed:.3f}', degrees, gust]
-        else:
-            cells = [f'{value:.3f}' for value in reading.velocity(self.wind.bearing)]
-        header = _MEANS if self.is_of_means else _INSTANTS
-        self.rows.write(header, [iso_date(stamp, 'milliseconds'), *cells])
+    def _write_waiting(self) -> None:
+        for stamp, reading in self._waiting:
+            if not self.count:
+                self.is_of_means = self.wind.interval >= LEAST_INTERVAL
+            if self.is_of_means:
+                used = self.wind.bearing if reading.bearing is None else reading.bearing
+                gust = '' if reading.gust is None else f'{reading.gust:.3f}'
+                degrees = f'{math.degrees(used) % 360.0:.1f}'
+                cells = [f'{reading.speed:.3f}', degrees, gust]
+            else:
+                cells = [f'{value:.3f}' for value in reading.velocity(self.wind.bearing)]
+            header = _MEANS if self.is_of_means else _INSTANTS
+            self.write(header, [iso_date(stamp, 'milliseconds'), *cells])
+        self._waiting.clear()

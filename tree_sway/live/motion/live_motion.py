@@ -9,17 +9,17 @@ are refused until the clock has been compared again (`SenderClock`).
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 import math
 import time
-from typing import NamedTuple
 
+from tree_sway.files.wind import Refusal
 from tree_sway.live.live_source import LiveSource
-from tree_sway.live.motion.motion_reading import MotionReading, Numbers
-from tree_sway.live.motion.motion_registry import OpenedMotion
+from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.motion.sender_clock import SenderClock
-from tree_sway.live.reading import Refusal
+from tree_sway.live.recent import RecentSamples
+from tree_sway.live.source import Source
 from tree_sway.live.transports.transport import Message
 
 SLOWEST = 5.0
@@ -37,23 +37,14 @@ _LONGEST_PAUSE = 2.0
 _LEFT_OUT = 'the tree stood still then, paused or as this machine had too much to do'
 
 
-class MotionSample(NamedTuple):
-    """A sample at a time of `time.monotonic` [s], with the quantities of `MotionReading`."""
-
-    time: float
-    acceleration: Numbers | None
-    rate: Numbers | None
-    orientation: Numbers | None
-
-
 class LiveMotion(LiveSource):
     """
     Samples of a source, from `start` to `stop`.
 
     Parameters
     ----------
-    opened
-        The source.
+    source
+        Its transport, and the reader of its messages.
     log
         Function called with a line of news, from the source's thread.
     heard
@@ -63,43 +54,28 @@ class LiveMotion(LiveSource):
 
     def __init__(
         self,
-        opened: OpenedMotion,
+        source: Source,
         log: Callable[[str], None],
         *,
-        heard: Callable[[MotionSample], None] | None = None,
+        heard: Callable[[MotionReading], None] | None = None,
     ) -> None:
-        source = opened.source
-        super().__init__(
-            source.transport,
-            log,
-            messages='messages',
-            expects=source.expects,
-            patience=_PATIENCE,
-            longest_pause=_LONGEST_PAUSE,
-        )
-        self.name = opened.name
+        super().__init__(source, log, patience=_PATIENCE, longest_pause=_LONGEST_PAUSE)
+        self.name = source.name
         """Name of the sensor for viewers."""
         self.quantities: tuple[str, ...] = ()
         """What its samples have."""
         self.left_out = 0
         """Number of samples of times that the steps of the tree left out, which were refused."""
-        self._source = source
         self._heard = heard
         self._clock = SenderClock(source.ticks)
-        self._samples: deque[MotionSample] = deque(maxlen=_QUEUE)
-        self._arrivals: deque[float] = deque(maxlen=_COUNTED)
+        self._samples = RecentSamples[MotionReading](_QUEUE, _COUNTED)
         self._sent = self._refused_at = -math.inf
         self._cause = ''
-
-    def _is_live(self) -> bool:
-        return time.monotonic() - self._sent < _SILENT
 
     @property
     def rate(self) -> float:
         """Samples per second [Hz], of the newest ones; 0 before two of them."""
-        arrivals = list(self._arrivals)
-        passed = arrivals[-1] - arrivals[0] if arrivals else 0.0
-        return (len(arrivals) - 1) / passed if passed > 0.0 else 0.0
+        return self._samples.rate
 
     @property
     def problem(self) -> str:
@@ -108,10 +84,10 @@ class LiveMotion(LiveSource):
             return self._clock.problem
         state = self.state
         if state == 'live':
-            is_slow = 0.0 < self.rate < SLOWEST and len(self._arrivals) == _COUNTED
+            is_slow = 0.0 < self.rate < SLOWEST and self.accepted >= _COUNTED
             slow = f'{self.rate:.1f} samples per second are too few: set 20 or more'
             return slow if is_slow else ''
-        if self._link.is_up:
+        if self.link.is_up:
             if state == 'stale':
                 now = time.monotonic()
                 silence = f'{now - self._sent:.0f} s'
@@ -130,12 +106,9 @@ class LiveMotion(LiveSource):
             told.append(f'{self.left_out} samples were refused: {_LEFT_OUT}')
         return '; '.join(filter(None, told))
 
-    def drain(self, until: float = math.inf) -> list[MotionSample]:
-        """Return the samples since the last call, up to a time of `time.monotonic` [s]."""
-        found = list[MotionSample]()
-        while self._samples and not self._samples[0].time > until:
-            found.append(self._samples.popleft())
-        return found
+    def drain(self, until: float = math.inf) -> list[MotionReading]:
+        """Return the samples since the last call, up to a time; all of `time.monotonic` [s]."""
+        return self._samples.drain(until)
 
     def _news(self) -> str:
         return f'{self.name}: {self.problem}'
@@ -164,43 +137,39 @@ class LiveMotion(LiveSource):
         if stamps and not self._clock.note(max(stamps), now, min(stamps)):
             if self._clock.ticks is not None:
                 mixture = self._clock.mixture
-                if mixture and mixture not in self.refused:
+                is_new = self._refuse(mixture or 'its clock jumped', len(readings))
+                if mixture and is_new:
                     self._log(f'{self.name}: {mixture}')
-                self._refuse(mixture or 'its clock jumped', len(readings))
             elif self._clock.problem:
                 self._refuse('its clock is of an unknown unit', len(readings))
             return
         for each in readings:
             is_whole = set(self.quantities) <= set(each.quantities)
             if not is_whole and now - self._sent <= _INCOMPLETE:
-                self._leave_out(each.quantities)
+                cause = f'{_words(each.quantities)} alone: send all of a sample in one message'
+                if self._refuse(cause):
+                    self._log(f'{self.name}: refused {cause}')
                 continue
             self._sent = now
+            self._expires = now + _SILENT
             at = now if each.time is None else self._clock.local(each.time)
-            sample = MotionSample(at, each.acceleration, each.rate, each.orientation)
+            sample = replace(each, time=at)
             self.accepted += 1
-            self._arrivals.append(at)
             if not self.quantities or not is_whole:
                 self.quantities = each.quantities
-                measured = ' and '.join(_WORDS[name] for name in self.quantities)
-                self._log(f'{self.name}: samples of {measured} come')
-            self._samples.append(sample)
+                self._log(f'{self.name}: samples of {_words(self.quantities)} come')
+            self._samples.add(at, sample)
             if self._heard is not None:
                 self._heard(sample)
 
-    def _refuse(self, cause: str, count: int = 1) -> None:
+    def _refuse(self, cause: str, count: int = 1) -> bool:
+        """Count what is refused; return whether its cause is new."""
         self._cause, self._refused_at = cause, time.monotonic()
-        super()._refuse(cause, count)
-
-    def _leave_out(self, quantities: Sequence[str]) -> None:
-        """Refuse a sample without a quantity that others have."""
-        measured = ' and '.join(_WORDS[name] for name in quantities)
-        cause = f'{measured} alone: send all of a sample in one message'
-        if cause not in self.refused:
-            self._log(f'{self.name}: refused {cause}')
-        self._refuse(cause)
+        return self.link.refuse(cause, count)
 
 
-_WORDS = {
-    'acceleration': 'acceleration', 'rate': 'angular rate', 'orientation': 'orientation',
-}  # fmt: skip
+_WORDS = {'rate': 'angular rate'}
+
+
+def _words(quantities: Sequence[str]) -> str:
+    return ' and '.join(_WORDS.get(name, name) for name in quantities)

@@ -87,9 +87,10 @@ class MotionFeed:
         if self._ahead - ahead > _ROUNDING:
             self._left_out = _LeftOut(self._ahead, self._stepped, self._stepped - ahead)
         self._ahead, self._stepped = ahead, until
-        sightings = self.film.drain() if self.film is not None else []
-        if self.film is not None and isinstance(simulator, FilmedTree):
-            simulator.camera = self.film.camera
+        film = self.film
+        sightings = film.drain() if film else []
+        if film and isinstance(simulator, FilmedTree):
+            simulator.camera = film.camera
             for seen in sightings:
                 simulator.film(seen.time + self._ahead, seen.reference, seen.points)
         for name, placed in self.sensors.items():
@@ -97,7 +98,7 @@ class MotionFeed:
             if not isinstance(simulator, ObservedTree) or name not in simulator.sensors:
                 continue
             for sample in samples:
-                at = self._time_of(sample.time)
+                at = self._time_of(sample.time or moment)
                 if at is None:
                     placed.live.left_out += 1
                     continue

@@ -18,14 +18,11 @@ from itertools import islice
 import math
 from typing import Any
 
-import numpy as np
-
-from tree_sway.files import dates, motion_of, rank_of
+from tree_sway.files import motion_of, rank_of
 from tree_sway.files.motion import flat
-from tree_sway.files.wind import number
-from tree_sway.live.motion.motion_reading import MotionReading, Numbers
-from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.reading import Refusal
+from tree_sway.files.wind import number, Refusal
+from tree_sway.live.motion.motion_reading import MotionReading
+from tree_sway.live.readers.json_path import parse_json, time_of
 from tree_sway.live.transports.transport import Message
 
 EXPECTS = (
@@ -37,7 +34,7 @@ _MOST = 500
 """Largest number of samples in one message."""
 _LONGEST = 40
 _MOST_NAMES = 256
-_QUANTITIES = ('acceleration', 'rate', 'orientation')
+_AXES = {'acceleration': 'xyz', 'rate': 'xyz', 'orientation': 'xyzw'}
 
 
 def read_motion_json(message: Message) -> Sequence[MotionReading | Refusal]:
@@ -52,49 +49,36 @@ def read_motion_json(message: Message) -> Sequence[MotionReading | Refusal]:
 
 def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
     """Return the sample of an object; None without motion."""
-    parts: dict[str, dict[str, float]] = {'acceleration': {}, 'rate': {}, 'orientation': {}}
-    time: float | None = None
-    has_time = False
+    parts = {name: dict[str, float]() for name in _AXES}
+    times = list[float | None]()
     for name, value in islice(flat(document), _MOST_NAMES):
-        place = _place(name[-_LONGEST:])
-        if place == ('time', ''):
-            has_time = True
-            time = _time(value)
-        elif place is not None:
+        quantity, axis = _place(name[-_LONGEST:])
+        if quantity == 'time':
+            times.append(time_of(value))
+        elif quantity:
             known = number(value)
-            parts[place[0]][place[1]] = math.nan if known is None else known
-    acceleration, rate = (_axes(parts[name], 'xyz') for name in ('acceleration', 'rate'))
-    orientation = _axes(parts['orientation'], 'xyzw')
-    if acceleration is None and rate is None and orientation is None:
+            parts[quantity][axis] = math.nan if known is None else known
+    whole = {
+        name: tuple(parts[name][axis] for axis in axes)
+        for name, axes in _AXES.items()
+        if parts[name].keys() >= set(axes)
+    }
+    if not whole:
         named = [name for name, axes in parts.items() if axes]
         return Refusal(_KIND, f'{named[0]} without all of its axes') if named else None
-    if has_time and time is None:
+    time = times[-1] if times else None
+    if times and time is None:
         return Refusal(_KIND, 'its time is neither a number nor a date')
-    return MotionReading(time, acceleration, rate, orientation)
-
-
-def _time(value: Any) -> float | None:
-    """Return a number of any unit, or the seconds of a date since 1970."""
-    found = number(value)
-    if found is None and isinstance(value, str):
-        times = dates([value[:_LONGEST]])
-        found = times.epoch if np.isfinite(times.seconds).all() else None
-    return found
-
-
-def _axes(found: Mapping[str, float], names: str) -> Numbers | None:
-    if any(axis not in found for axis in names):
-        return None
-    return tuple(found[axis] for axis in names)
+    return MotionReading(time, **whole)
 
 
 @lru_cache(4096)
-def _place(name: str) -> tuple[str, str] | None:
-    """Quantity and axis of a name; None for any other."""
+def _place(name: str) -> tuple[str, str]:
+    """Quantity and axis of a name; the quantity is empty for any other."""
     if rank_of(name, 'time') is not None:
         return 'time', ''
     for each in (name, name.rpartition('.')[2]):  # ax within data is none of "data a"
         quantity, _, axis = motion_of(each) or ('', '', '')
-        if quantity in _QUANTITIES and axis in tuple('xyzw'):
+        if quantity in _AXES and axis in tuple('xyzw'):
             return quantity, axis
-    return None
+    return '', ''

@@ -17,7 +17,8 @@ class MotionReading:
     Parameters
     ----------
     time
-        Time on the clock of the sender, in its own unit; None for that of arrival.
+        Time on the clock of the sender, in its own unit; None for that of arrival. Samples of
+        `LiveMotion` have times of `time.monotonic` [s].
     acceleration
         Acceleration, x y z, in [m/s^2] or in g.
     rate

@@ -4,29 +4,21 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-from urllib.parse import unquote
+from dataclasses import replace
 
 from tree_sway.live.motion.motion_json import EXPECTS, read_motion_json
 from tree_sway.live.motion.phyphox import EXPECTS as OF_PHYPHOX
 from tree_sway.live.motion.phyphox import PhyphoxPhone
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import read_source_address, SourceAddress
+from tree_sway.live.sources.lines import udp_of
 from tree_sway.live.sources.mqtt_topic import broker_of
-from tree_sway.live.sources.udp_line import udp_of
 
 _FORMS = ('http://PHONE:8080 (phyphox)', 'udp:PORT', 'mqtt://host/topic')
 """Addresses as examples."""
 
 
-class OpenedMotion(NamedTuple):
-    """A source of motion, and its name for viewers."""
-
-    source: Source
-    name: str
-
-
-def open_motion(text: str) -> OpenedMotion:
+def open_motion(text: str) -> Source:
     """
     Open a motion sensor by its address.
 
@@ -52,7 +44,7 @@ def open_motion(text: str) -> OpenedMotion:
     source = address.kind_of(known, 'live motion sensor', '--motion', forms)(address)
     name = address.name
     address.refuse_others()
-    return OpenedMotion(source, name or source.name)
+    return replace(source, name=name or source.name)
 
 
 def _phyphox(address: SourceAddress) -> Source:
@@ -72,5 +64,5 @@ def _udp(address: SourceAddress) -> Source:
 
 
 def _mqtt(address: SourceAddress) -> Source:
-    topic = unquote(address.parts.path.removeprefix('/'))
+    topic = address.place.removeprefix('/')
     return Source(broker_of(address, (topic,)), read_motion_json, topic, EXPECTS)

@@ -21,15 +21,15 @@ import math
 from typing import Any
 
 import aiohttp
+import numpy as np
 
 from tree_sway.files import list_of, object_of
-from tree_sway.files.wind import number
+from tree_sway.files.wind import number, Refusal
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.reading import Refusal
-from tree_sway.live.transports.event_loop import run_until_over
-from tree_sway.live.transports.http_poll import body_of
+from tree_sway.live.transports.http_poll import document_of
 from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.loop_transport import LoopTransport
 from tree_sway.live.transports.transport import Message
 
 EXPECTS = 'the remote access of phyphox, with an experiment of acceleration or the gyroscope'
@@ -77,7 +77,7 @@ class _Sensor:
         on.
         """
         times, *columns = (_values(answer, name) for name in (self.time, *self.axes))
-        lengths = [len(each) for each in (times, *columns)]
+        lengths = [*map(len, (times, *columns))]
         if max(lengths) - min(lengths) > _AHEAD:
             return None
         return list(zip(times, zip(*columns, strict=False), strict=False))
@@ -91,7 +91,7 @@ class _Sensor:
         return bool(known)
 
 
-class PhyphoxPhone:
+class PhyphoxPhone(LoopTransport):
     """
     Transport of the answers of a phone, and reader of them.
 
@@ -114,11 +114,7 @@ class PhyphoxPhone:
         """Return its address."""
         return self.url
 
-    def listen(self, receiver: Link) -> None:
-        """Deliver each answer with new samples; a `ConnectionError` says what to change."""
-        run_until_over(self._poll(receiver), receiver)
-
-    async def _poll(self, receiver: Link) -> None:
+    async def _work(self, receiver: Link) -> None:
         timeout = aiohttp.ClientTimeout(total=_TIMEOUT)
         # Phones of some versions answer one request for each connection.
         connector = aiohttp.TCPConnector(force_close=True)
@@ -153,14 +149,10 @@ class PhyphoxPhone:
         self, session: aiohttp.ClientSession, path: str, asked: Mapping[str, str]
     ) -> Any:
         try:
-            async with session.get(
-                f'{self.url}{path}', params=asked, allow_redirects=False
-            ) as answer:
-                if answer.status != 200:
-                    raise ConnectionError(f'HTTP {answer.status}: is it phyphox 1.1.8 or later?')
-                data = await body_of(answer, _LARGEST)
-        except asyncio.TimeoutError:
-            raise ConnectionError(f'no answer within {_TIMEOUT:g} s') from None
+            data = await document_of(
+                session, f'{self.url}{path}', _LARGEST, ': is it phyphox 1.1.8 or later?',
+                params=asked, allow_redirects=False,
+            )  # fmt: skip
         except aiohttp.ClientConnectionError:
             raise ConnectionError(
                 'no answer: is remote access on in phyphox, its screen lit and the phone in this '
@@ -198,33 +190,30 @@ class PhyphoxPhone:
 def _joined(forces: deque[Sample], rates: deque[Sample]) -> list[MotionReading | Refusal]:
     """Read accelerations with the rate at their times, up to the newest rate."""
     found = list[MotionReading | Refusal]()
-    while forces and rates and forces[0][0] <= rates[-1][0]:
+    times = [at for at, _ in rates]
+    columns = list(zip(*(values for _, values in rates), strict=True))
+    while times and forces and forces[0][0] <= times[-1]:
         at, force = forces.popleft()
-        while len(rates) > 1 and rates[1][0] < at:
-            rates.popleft()
-        if rates[0][0] <= at and len(rates) > 1:
-            found.append(MotionReading(at, force, _between(rates[0], rates[1], at)))
+        if times[0] <= at and len(times) > 1:
+            rate = tuple(float(np.interp(at, times, column)) for column in columns)
+            found.append(MotionReading(at, force, rate))
+            while rates[1][0] < at:
+                rates.popleft()
     return found
-
-
-def _between(before: Sample, after: Sample, at: float) -> Numbers:
-    share = (at - before[0]) / max(after[0] - before[0], 1e-9)
-    return tuple(a + share * (b - a) for a, b in zip(before[1], after[1], strict=True))
 
 
 def _sensors_of(config: Any) -> list[_Sensor]:
     """Return the sensors of an experiment by ``/config``; a `ConnectionError` without any."""
-    sources: dict[str, dict[str, str]] = {}
+    sources: dict[str, Mapping[str, Any]] = {}
     for each in map(object_of, list_of(object_of(config).get('inputs'))):
-        named: dict[str, str] = {}
-        for output in map(object_of, list_of(each.get('outputs'))):
-            named |= {str(key): str(name) for key, name in output.items()}
+        named = ChainMap(*map(object_of, list_of(each.get('outputs'))))
         if {'x', 'y', 'z', 't'} <= named.keys():
             sources.setdefault(str(each.get('source')), named)
     found = []
     for quantity, kinds in _SENSORS:
-        for names in [sources[kind] for kind in kinds if kind in sources][:1]:
-            found.append(_Sensor(quantity, tuple(names[axis] for axis in 'xyz'), names['t']))
+        if source := next(filter(sources.get, kinds), None):
+            *axes, time = (str(sources[source][name]) for name in 'xyzt')
+            found.append(_Sensor(quantity, tuple(axes), time))
     if not found:
         title = str(object_of(config).get('title', ''))[:40]
         raise ConnectionError(

@@ -31,6 +31,9 @@ _MIXTURE = 'its times go back and forth, as those of two senders: give each an a
 _SLEW = 0.05
 """Change of the difference in a second [s]: small, so that samples keep their order."""
 
+_NEVER = math.inf, math.inf
+"""Stamp and arrival of a first sample that has not come."""
+
 
 class SenderClock:
     """
@@ -52,11 +55,11 @@ class SenderClock:
         """Number of times that it was set anew."""
         self._backs: deque[float] = deque(maxlen=_MIXED)
         self._previous = self._arrival = -math.inf
-        self._first: tuple[float, float] | None = None
+        self._first = _NEVER
         self._count = 0
         self._offset = self._low = self._low_before = math.inf
         self._window_ends = -math.inf
-        self._jumped_at: float | None = None
+        self._jumped_at = math.inf
         self._newest = -math.inf
 
     def note(self, stamp: float, arrival: float, earliest: float | None = None) -> bool:
@@ -78,7 +81,7 @@ class SenderClock:
             self._begin(difference, arrival, stamp)
         elif abs(difference - self._offset) > _JUMP:
             return self._is_set_anew(difference, arrival, stamp)
-        self._jumped_at = None
+        self._jumped_at = math.inf
         first = stamp if earliest is None else earliest
         self._follow(difference, arrival, (first - self._newest) / self.ticks)
         self._newest = max(self._newest, stamp)
@@ -97,7 +100,7 @@ class SenderClock:
         return stamp / self.ticks + self._offset
 
     def _find_ticks(self, stamp: float, arrival: float) -> bool:
-        if self._first is None or stamp < self._first[0]:
+        if stamp < self._first[0]:
             self._first = (stamp, arrival)
             self._count = 0
         self._count += 1
@@ -111,7 +114,7 @@ class SenderClock:
                 f'its clock counts {ratio:.3g} in a second: send the time in s, ms, us or ns, or '
                 'leave it out'
             )
-            self._first = None
+            self._first = _NEVER
             return False
         self.ticks = unit
         self.problem = ''
@@ -123,12 +126,11 @@ class SenderClock:
         self._newest = stamp
 
     def _is_set_anew(self, difference: float, arrival: float, stamp: float) -> bool:
-        if self._jumped_at is None:
-            self._jumped_at = arrival
+        self._jumped_at = min(self._jumped_at, arrival)
         if arrival - self._jumped_at < _PATIENCE:
             return False
         self.jumps += 1
-        self._jumped_at = None
+        self._jumped_at = math.inf
         self._begin(difference, arrival, stamp)
         return True
 

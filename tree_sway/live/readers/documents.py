@@ -7,10 +7,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from tree_sway.files.wind import Reading
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.tempest import is_tempest, read_tempest
 from tree_sway.live.readers.weatherlink import conditions_of, read_weatherlink
-from tree_sway.live.reading import Reading
 
 _KIND = 'JSON'
 

@@ -15,15 +15,22 @@ from dataclasses import dataclass, field
 from operator import itemgetter
 
 from tree_sway.core.wind import is_wind
-from tree_sway.files import pairs_of
-from tree_sway.files.wind import INSTRUMENTS, LOGGED, parse_nmea, read_instrument, SENTENCES
+from tree_sway.files import pairs_of, unit_factor
+from tree_sway.files.wind import (
+    INSTRUMENTS,
+    LOGGED,
+    parse_nmea,
+    read_instrument,
+    Reading,
+    Refusal,
+    SENTENCES,
+    WindReading,
+)
 from tree_sway.live.readers.documents import read_document
-from tree_sway.live.readers.json_options import factor_of, names_of
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.readers.named_values import WindNames
+from tree_sway.live.readers.named_values import names_of, NO_UNIT, WindNames
 from tree_sway.live.readers.number_columns import columns_of, read_numbers
 from tree_sway.live.readers.signalk import SignalKWind
-from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.transport import Message
 
@@ -57,10 +64,8 @@ class InstrumentLines:
         Magnetic declination, east positive [rad].
     columns
         Meaning of numbers in a line, as `columns_of`.
-    factor
-        Metres per second in the unit of a line without one.
     names
-        Where the wind is in a line of JSON.
+        Where the wind is in a line of JSON, and the unit of a speed without one.
 
     """
 
@@ -68,13 +73,14 @@ class InstrumentLines:
     heading: float = 0.0
     declination: float = 0.0
     columns: Sequence[str] = ()
-    factor: float = 1.0
     names: WindNames = field(default_factory=WindNames)
     found: str = field(default='', init=False)
     """First good kind; empty before it."""
 
     def __post_init__(self) -> None:
-        """Prepare the reader that keeps the newest value of each path."""
+        """Prepare what all lines share."""
+        self._factor = unit_factor('speed', self.names.unit or 'm/s') or 1.0
+        self._no_unit = '' if self.names.unit else NO_UNIT
         self._signalk = SignalKWind(self.heading)
 
     @property
@@ -107,8 +113,8 @@ class InstrumentLines:
         heading = self.heading
         reading = (
             parse_nmea(line, heading, self.declination)
-            or read_instrument(line, heading, self.factor)
-            or read_numbers(line, self.columns, heading, self.factor)
+            or read_instrument(line, heading, self._factor)
+            or read_numbers(line, self.columns, heading, self._factor, self._no_unit)
         )
         if reading is not None:
             yield reading
@@ -128,11 +134,13 @@ def lines_of(address: SourceAddress) -> InstrumentLines:
     sentence = address.text_of('sentence', 'auto')
     if sentence not in _LINE_KINDS:
         raise address.error(f"sentence is '{sentence}'", f'use {", ".join(_LINE_KINDS)}')
+    names = names_of(address)
+    if names.unit and unit_factor('speed', names.unit) is None:
+        raise address.error(f"unknown unit '{names.unit}'", 'use m/s, km/h, kn, mph or ft/s')
     return InstrumentLines(
         sentence,
         address.angle('heading_degrees'),
         address.angle('declination_degrees'),
         columns_of(address.text_of('columns')),
-        factor_of(address),
-        names_of(address),
+        names,
     )

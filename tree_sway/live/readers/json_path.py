@@ -1,17 +1,23 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Path of a value in JSON: ``attributes.wind_speed``, ``data.conditions[0].wind_speed_last``."""
+"""Path of a value in JSON, as ``data.conditions[0].wind_speed_last``, and a value as a time."""
 
 from __future__ import annotations
 
 import json
+import math
 import re
 from typing import Any
 
 from tree_sway.errors import ParameterError
+from tree_sway.files import dates
+from tree_sway.files.wind import number
 
 _STEP = re.compile(r'\[(\d+)\]|([^.\[\]]+)')
 _PATH = re.compile(r'(\$\.?)?([^.\[\]]+|\[\d+\])((\.[^.\[\]]+)|(\[\d+\]))*')
+
+_LONGEST = 40
+"""Length of the longest text that may be a date."""
 
 
 class JsonPath:
@@ -39,13 +45,11 @@ class JsonPath:
     def find(self, document: Any) -> Any:
         """Return the value, None where there is none."""
         for step in self._steps:
-            if isinstance(step, int):
-                is_there = isinstance(document, list) and step < len(document)
-            else:
-                is_there = isinstance(document, dict) and step in document
-            if not is_there:
+            is_inside = isinstance(document, list if isinstance(step, int) else dict)
+            try:
+                document = document[step] if is_inside else None
+            except LookupError:
                 return None
-            document = document[step]
         return document
 
 
@@ -55,3 +59,12 @@ def parse_json(data: bytes) -> Any:
         return json.loads(data)
     except (ValueError, RecursionError):
         return None
+
+
+def time_of(value: Any) -> float | None:
+    """Return a number of any unit, or the seconds of a date since 1970; None for any other."""
+    found = number(value)
+    if found is None and isinstance(value, str):
+        times = dates([value[:_LONGEST]])
+        found = times.epoch if math.isfinite(times.seconds[0]) else None
+    return found

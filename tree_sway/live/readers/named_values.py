@@ -12,19 +12,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any
+from typing import Any, NamedTuple
 
 from tree_sway.files import folded, rank_of, SENDERS, unit_factor, unit_in_name
 from tree_sway.files.motion import flat, unit_beside
-from tree_sway.files.wind import number, reading_of
+from tree_sway.files.wind import number, Reading, reading_of, Refusal
 from tree_sway.live.readers.json_path import JsonPath
-from tree_sway.live.reading import Reading, Refusal
+from tree_sway.live.source_address import SourceAddress
 
 _LONGEST = 120
 """Length of names that are looked at; of one letter is none, which may be anything."""
 _MOST = 2000
 """Largest number of values of one message."""
-_NO_UNIT = 'taken in m/s, as nothing tells its unit: unit=km/h in the address changes it'
+NO_UNIT = 'taken in m/s, as nothing tells its unit: unit=km/h in the address changes it'
 
 
 @dataclass(frozen=True)
@@ -53,28 +53,33 @@ class WindNames:
         """Return the wind of a document; nothing where it has no speed."""
         whole = document if isinstance(document, Mapping) else {'': document}
         leaves = dict(islice(flat(whole, lists=True), _MOST))
-        name, speed = _found(document, leaves, self.speed, 'wind_speed')
-        if speed is _ABSENT:
+        common = self._unit(document)
+
+        def found(path: JsonPath | None, quantity: str) -> _Found | None:
+            if path is None:
+                return _by_name(leaves, quantity, common)
+            value = path.find(document)
+            return None if value is None else _Found(value, common)
+
+        speed = found(self.speed, 'wind_speed')
+        if speed is None:
             return []
-        unit = self._unit_of(document, leaves, name, 'wind_speed')
-        factor = unit_factor('speed', unit or 'm/s')
+        factor = speed.factor
         if factor is None:
-            return [Refusal(kind, f"unknown unit '{unit[:20]}'")]
-        _, direction = _found(document, leaves, self.direction, 'wind_direction')
-        name, gust = _found(document, leaves, self.gust, 'gust')
-        most = None if gust is _ABSENT else number(gust)
-        gust_factor = unit_factor('speed', self._unit_of(document, leaves, name, 'gust') or 'm/s')
-        has_gust = most is not None and gust_factor is not None
+            return [Refusal(kind, f"unknown unit '{speed.unit[:20]}'")]
+        direction = found(self.direction, 'wind_direction')
+        angle = None if direction is None else direction.value
+        gust = found(self.gust, 'gust')
         return [
             reading_of(
                 kind,
-                speed,
-                None if direction in (_ABSENT, *_NO_DIRECTION) else direction,
+                speed.value,
+                None if angle in _NO_DIRECTION else angle,
                 factor=factor,
-                gust=most * gust_factor if has_gust else None,  # type: ignore[operator]
+                gust=None if gust is None else gust.speed,
                 interval=self.interval,
                 sender=_sender(leaves),
-                assumed='' if unit else _NO_UNIT,
+                assumed='' if speed.unit else NO_UNIT,
             )
         ]
 
@@ -85,34 +90,42 @@ class WindNames:
         found = JsonPath(self.unit).find(document)
         return found if isinstance(found, str) and found else self.unit
 
-    def _unit_of(self, document: Any, leaves: Mapping[str, Any], name: str, quantity: str) -> str:
-        """Return the unit of a speed: that beside it, in its name, or of all."""
-        if not name:
-            return self._unit(document)
-        has_parts = name.endswith('.value')
-        beside = unit_beside(leaves, name) if has_parts else leaves.get(f'{name}_unit')
-        last = name.removesuffix('.value').rpartition('.')[2]
-        return beside or unit_in_name(last, quantity) or self._unit(document)
+
+def names_of(address: SourceAddress) -> WindNames:
+    """
+    Read the paths ``speed``, ``direction`` and ``gust`` of an address, and ``unit``.
+
+    Raises a `ParameterError` for text that is no path.
+    """
+    texts = map(address.text_of, ('speed', 'direction', 'gust'))
+    speed, direction, gust = (JsonPath(text) if text else None for text in texts)
+    return WindNames(speed, direction, gust, address.text_of('unit'))
 
 
-_ABSENT = object()
 _NO_DIRECTION = ('', 'VRB')
 """Cells of a direction that is not measured, or variable."""
 
 
-def _sender(leaves: Mapping[str, Any]) -> str:
-    """Return what a message says of its instrument; empty for nothing."""
-    named = {folded(name.rpartition('.')[2]): value for name, value in leaves.items()}
-    return next((named[name] for name in SENDERS if named.get(name)), '')[:_LONGEST]
+class _Found(NamedTuple):
+    """A value of a document, and the unit of speeds there; empty where nothing tells it."""
+
+    value: Any
+    unit: str
+
+    @property
+    def factor(self) -> float | None:
+        """Metres per second in the unit; None for an unknown one."""
+        return unit_factor('speed', self.unit or 'm/s')
+
+    @property
+    def speed(self) -> float | None:
+        """Value in [m/s]; None where it is no number, or in an unknown unit."""
+        size, factor = number(self.value), self.factor
+        return None if size is None or factor is None else size * factor
 
 
-def _found(
-    document: Any, leaves: Mapping[str, Any], path: JsonPath | None, quantity: str
-) -> tuple[str, Any]:
-    """Name and value of a quantity; the name is empty where a path says where it is."""
-    if path is not None:
-        found = path.find(document)
-        return '', _ABSENT if found is None else found
+def _by_name(leaves: Mapping[str, str], quantity: str, common: str) -> _Found | None:
+    """Find a quantity by its usual names, with the unit beside it, in its name, or of all."""
     # Longer names are none, and would stay in the cache.
     last_of = {name: name.rpartition('.')[2] for name in leaves if len(name) <= _LONGEST}
     ranks = {name: rank_of(name, quantity) for name, last in last_of.items() if last[1:]}
@@ -123,6 +136,15 @@ def _found(
         if rank is not None
     ]
     if not known:
-        return '', _ABSENT
+        return None
     name = min(known)[-1]
-    return name, leaves[name]
+    has_parts = name.endswith('.value')
+    beside = unit_beside(leaves, name) if has_parts else leaves.get(f'{name}_unit')
+    last = name.removesuffix('.value').rpartition('.')[2]
+    return _Found(leaves[name], beside or unit_in_name(last, quantity) or common)
+
+
+def _sender(leaves: Mapping[str, str]) -> str:
+    """Return what a message says of its instrument; empty for nothing."""
+    named = {folded(name.rpartition('.')[2]): value for name, value in leaves.items()}
+    return next((named[name] for name in SENDERS if named.get(name)), '')[:_LONGEST]

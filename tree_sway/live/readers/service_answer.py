@@ -14,11 +14,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tree_sway.files import dates, object_of
-from tree_sway.files.wind import number
-from tree_sway.live.readers.json_path import JsonPath, parse_json
+from tree_sway.files import object_of
+from tree_sway.files.wind import number, Reading, Refusal, WindReading
+from tree_sway.live.readers.json_path import JsonPath, parse_json, time_of
 from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.transports.transport import Message
 
 _WIND = ('speed', 'direction', 'gust')
@@ -44,11 +43,8 @@ class ServiceAnswer:
         if isinstance(reason, str):
             return [Refusal(self._kind, reason[:80])]
         about = {each: path.find(document) for each, path in self._about.items()}
-        time = about['time']
-        dated = dates([str(time)[:40]])
-        is_date = bool(dated.seconds[0] == 0.0)
         fields: dict[str, Any] = {
-            'time': dated.epoch if is_date else number(time),
+            'time': time_of(about['time']),
             'interval': number(about.get('lasting')),
             'place': str(about.get('station') or '').partition(',')[0][:60],
         }

@@ -14,9 +14,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 import math
 
-from tree_sway.files.wind import number, SIGNALK_PAIRS, signalk_values, SIGNALK_WIND
+from tree_sway.files.wind import (
+    number,
+    Reading,
+    Refusal,
+    SIGNALK_PAIRS,
+    signalk_values,
+    SIGNALK_WIND,
+    WindReading,
+)
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.transports.transport import Message
 
 HEADING = 'navigation.headingTrue'

@@ -12,8 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from tree_sway.files.wind import reading_of, tempest_values
-from tree_sway.live.reading import Reading
+from tree_sway.files.wind import Reading, reading_of, tempest_values
 
 KIND = 'rapid_wind'
 

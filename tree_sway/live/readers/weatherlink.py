@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from tree_sway.files import list_of, object_of
+from tree_sway.files.wind import Reading
 from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.reading import Reading
 from tree_sway.live.transports.transport import Message
 
 _KIND = 'WeatherLink Live'

@@ -15,8 +15,8 @@ from hashlib import sha256
 from urllib.parse import parse_qsl
 
 from tree_sway.doorkeeper import is_loopback
+from tree_sway.files.wind import Reading, Refusal
 from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.reading import Reading, Refusal
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.http_server import HttpServer
@@ -46,9 +46,7 @@ def open_source(address: SourceAddress) -> Source:
 
     ``host=0.0.0.0`` opens it to the network, for whoever sends the word in ``passkey_file``.
     """
-    text = address.place
-    if not text.isdigit() or not 0 < int(text) < 65_536:
-        raise address.error('no port', 'give ecowitt:8080, and that port in the station')
+    port = address.port(cure='give ecowitt:8080, and that port in the station')
     host = address.text_of('host', '127.0.0.1')
     passkey = address.secret('passkey_file')
     if not is_loopback(host) and len(passkey) < _SHORTEST_PASSKEY:
@@ -57,6 +55,6 @@ def open_source(address: SourceAddress) -> Source:
             'write one to a file, name it as passkey_file=FILE, and give it in the station: as '
             'its password, or in its path, as /PASSKEY/',
         )
-    server = HttpServer(int(text), host, passkey)
+    server = HttpServer(port, host, passkey)
     expects = 'the upload of Ecowitt or of Weather Underground, with windspeedmph'
     return Source(server, read_upload, 'weather station', expects)

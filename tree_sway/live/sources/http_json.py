@@ -9,10 +9,10 @@ from urllib.parse import parse_qsl, urlencode
 
 from tree_sway.errors import nearest
 from tree_sway.files import unit_factor
+from tree_sway.files.wind import Reading
 from tree_sway.live.readers.documents import read_document
-from tree_sway.live.readers.json_options import names_of
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.reading import Reading
+from tree_sway.live.readers.named_values import names_of
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.http_poll import HttpPoll
@@ -57,9 +57,8 @@ def open_source(address: SourceAddress) -> Source:
         address.options = {k: v for k, v in address.options.items() if k in _OPTIONS}
         parts = parts._replace(query=urlencode(theirs))
     every = address.number('every', 60.0, _SHORTEST, _LONGEST)
-    token = address.secret('token_file')
-    headers = {'Authorization': f'Bearer {token}'} if token else {}
-    transport = HttpPoll(parts._replace(fragment='').geturl(), every, headers)
+    url = parts._replace(fragment='').geturl()
+    transport = HttpPoll(url, every, address.headers())
     interval = every if every >= LEAST_INTERVAL else 0.0
     names = names_of(address)
 

@@ -14,8 +14,7 @@ from collections.abc import Sequence
 import re
 import struct
 
-from tree_sway.files.wind import reading_of
-from tree_sway.live.reading import Reading, Refusal
+from tree_sway.files.wind import Reading, reading_of, Refusal
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.modbus import KINDS, Modbus, PORT
@@ -55,10 +54,9 @@ def open_source(address: SourceAddress) -> Source:
         )
 
     def read(message: Message) -> Sequence[Reading]:
-        size = len(message.data) // 2
-        words = struct.unpack(f'>{size}h', message.data[: 2 * size])
-        if len(words) < count:
-            return [Refusal(_KIND, f'{len(words)} registers of {count}')]
+        if len(message.data) != 2 * count:
+            return [Refusal(_KIND, f'{len(message.data)} bytes of {count} registers')]
+        words = struct.unpack(f'>{count}h', message.data)
         if words[speed - first] in _NO_VALUE:
             return [Refusal(_KIND, f'no speed: the register is {words[speed - first]}')]
         degrees: float | str | None = None

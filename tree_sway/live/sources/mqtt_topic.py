@@ -4,17 +4,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from urllib.parse import unquote
 
-from tree_sway.files.wind import bearing_of
+from tree_sway.files.wind import bearing_of, Reading, WindReading
 from tree_sway.live.readers.instrument_lines import lines_of
-from tree_sway.live.reading import Read, Reading, WindReading
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.mqtt import Mqtt, PORT, TLS_PORT
 from tree_sway.live.transports.transport import Message
+
+_Read = Callable[[Message], Sequence[Reading]]
 
 
 def open_source(address: SourceAddress) -> Source:
@@ -24,11 +25,11 @@ def open_source(address: SourceAddress) -> Source:
     ``field`` is the path of the speed, as ``speed``; ``direction_topic`` is that of a direction
     that comes by itself; ``user`` and ``password_file`` log in.
     """
-    topic = unquote(address.parts.path.removeprefix('/'))
+    topic = address.place.removeprefix('/')
     if 'field' in address.options:
         address.options.setdefault('speed', address.options['field'])
     address.text_of('field')
-    read: Read = lines_of(address)
+    read: _Read = lines_of(address)
     vane = address.text_of('direction_topic')
     transport = broker_of(address, (topic, vane) if vane else (topic,))
     expects = 'JSON with a wind speed (say where: field=PATH), or a number'
@@ -54,7 +55,7 @@ def broker_of(address: SourceAddress, topics: tuple[str, ...]) -> Mqtt:
 class _WithVane:
     """Reader of speeds, with the newest direction of a topic of its own."""
 
-    read: Read
+    read: _Read
     topic: str
     bearing: float | None = field(default=None, init=False)
 
@@ -67,4 +68,4 @@ class _WithVane:
     def _turned(self, reading: Reading) -> Reading:
         if not isinstance(reading, WindReading):
             return reading
-        return WindReading(reading.kind, reading.speed, self.bearing, gust=reading.gust)
+        return replace(reading, bearing=self.bearing)

@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 
 from tree_sway.files.wind import SIGNALK_WIND
-from tree_sway.live.question_options import silence_of
 from tree_sway.live.readers.signalk import HEADING, SignalKWind
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
@@ -32,8 +31,7 @@ def open_source(address: SourceAddress) -> Source:
         'context': 'vessels.self',
         'subscribe': [{'path': path, 'policy': 'instant', 'minPeriod': 50} for path in paths],
     }
-    token = address.secret('token_file')
-    headers = {'Authorization': f'Bearer {token}'} if token else {}
-    socket = WebSocket(url, json.dumps(subscription), headers, silence_of(address, 30.0))
+    hello = json.dumps(subscription)
+    socket = WebSocket(url, hello, address.headers(), address.silence(30.0))
     read = SignalKWind(address.angle('heading_degrees'))
     return Source(socket, read, f'Signal K {address.host}', 'deltas of environment.wind', 0.0)

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tree_sway.files.wind import Reading
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.tempest import read_tempest
-from tree_sway.live.reading import Reading
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.transport import Message

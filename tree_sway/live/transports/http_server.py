@@ -15,8 +15,8 @@ from urllib.parse import parse_qs
 from aiohttp import web
 
 from tree_sway.doorkeeper import Doorkeeper
-from tree_sway.live.transports.event_loop import run_until_over
 from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.loop_transport import LoopTransport
 from tree_sway.live.transports.transport import Message
 
 _LARGEST = 65_536
@@ -32,7 +32,7 @@ _WORDS = ('PASSKEY', 'PASSWORD')
 
 
 @dataclass(frozen=True)
-class HttpServer:
+class HttpServer(LoopTransport):
     """
     A port of this machine; each message is the body of a POST, or the query of a GET.
 
@@ -50,11 +50,7 @@ class HttpServer:
         """Return its address."""
         return f'http://{self.host}:{self.port}'
 
-    def listen(self, receiver: Link) -> None:
-        """Deliver what is sent."""
-        run_until_over(self._serve(receiver), receiver)
-
-    async def _serve(self, receiver: Link) -> None:
+    async def _work(self, receiver: Link) -> None:
         doors = Doorkeeper(_MOST_SOCKETS, receiver.refuse)
 
         async def take(request: web.Request) -> web.Response:

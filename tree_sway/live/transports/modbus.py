@@ -4,7 +4,9 @@
 Registers of an instrument with Modbus, over TCP or a serial port.
 
 Two requests are enough: to read holding and input registers (Modbus application protocol 1.1b3,
-6.3 and 6.4), in the frames of Modbus TCP or of RTU with its checksum.
+6.3 and 6.4), in the frames of Modbus TCP or of RTU with its checksum. pymodbus, whose releases
+name the device differently, takes registers of another kind for those that were asked for, and
+tells neither which other device has answered nor why a port cannot be opened.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ KINDS = {'holding': 3, 'input': 4}
 """Kinds of registers, and the function that reads each."""
 _TIMEOUT = 1.0
 """Longest wait for an answer [s]."""
+_NOT_MODBUS = 'its answer is not that of Modbus'
 _FAILED = 0x80
 _FAILURES = {
     1: 'it has no such kind of registers', 2: 'it has no such register', 3: 'illegal value',
@@ -36,7 +39,7 @@ _FAILURES = {
 }  # fmt: skip
 
 Exchange = Callable[[bytes], bytes]
-"""Function that sends a request to the device and returns the body of its answer."""
+"""Function that sends a request and returns the answer: device, function and the rest of each."""
 
 
 @dataclass(frozen=True)
@@ -75,22 +78,25 @@ class Modbus:
         """Read the registers again and again."""
         function = KINDS[self.kind]
         size = 2 * self.count
-        request = struct.pack('>BHH', function, self.first, self.count)
+        request = struct.pack('>BBHH', self.device, function, self.first, self.count)
         with self._line() if self.baud else self._network() as exchange:
             receiver.opened()
             while not receiver.is_over:
                 answer = exchange(request)
-                if answer[0] == function | _FAILED:
-                    why = _FAILURES.get(answer[1], f'code {answer[1]}')
+                if answer[0] != self.device:  # such as of a gateway
+                    why = f'device {answer[0]} answers in place of {self.device}'
+                    raise ConnectionError(why)
+                if answer[1] == function | _FAILED:
+                    why = _FAILURES.get(answer[2], f'code {answer[2]}')
                     raise ConnectionError(f'the instrument refuses: {why}')
-                if (answer[0], answer[1], len(answer)) != (function, size, 2 + size):
-                    raise ConnectionError('its answer is not that of Modbus')
-                receiver.deliver(Message(answer[2:]))
+                if (*answer[1:3], len(answer)) != (function, size, 3 + size):
+                    raise ConnectionError(_NOT_MODBUS)
+                receiver.deliver(Message(answer[3:]))
                 receiver.pause(self.every)
 
     @contextmanager
     def _network(self) -> Iterator[Exchange]:
-        """Modbus TCP: a number of the exchange, zero, the length and the device come first."""
+        """Modbus TCP: a number of the exchange, zero and the length come first."""
         with socket.create_connection((self.place, self.port), _TIMEOUT) as link:
             numbers = cycle(range(0x1_0000))
 
@@ -109,23 +115,21 @@ class Modbus:
 
             def exchange(request: bytes) -> bytes:
                 number = next(numbers)
-                head = struct.pack('>HHHB', number, 0, len(request) + 1, self.device)
-                link.sendall(head + request)
+                link.sendall(struct.pack('>HHH', number, 0, len(request)) + request)
                 end = time.monotonic() + _TIMEOUT
                 while True:
-                    theirs, zero, size, device = struct.unpack('>HHHB', read(7, end))
+                    theirs, zero, size = struct.unpack('>HHH', read(6, end))
                     if zero or not 3 <= size <= 3 + 2 * self.count:
-                        raise ConnectionError('its answer is not that of Modbus')
-                    answer = read(size - 1, end)
+                        raise ConnectionError(_NOT_MODBUS)
+                    answer = read(size, end)
                     if theirs == number:  # others are late answers
-                        self._refuse_other(device)
                         return answer
 
             yield exchange
 
     @contextmanager
     def _line(self) -> Iterator[Exchange]:
-        """RTU: the device comes first, a checksum last."""
+        """RTU: a checksum comes last."""
         serial: Any = importlib.import_module('serial')
         with serial.Serial(
             self.place, self.baud, timeout=_TIMEOUT, write_timeout=_TIMEOUT
@@ -133,8 +137,7 @@ class Modbus:
 
             def exchange(request: bytes) -> bytes:
                 port.reset_input_buffer()
-                frame = bytes([self.device]) + request
-                port.write(frame + checksum(frame))
+                port.write(request + checksum(request))
                 answer = bytes(port.read(3))
                 if len(answer) == 3:
                     is_failure = answer[1] & _FAILED
@@ -143,15 +146,9 @@ class Modbus:
                     raise ConnectionError(f'no answer of device {self.device}')
                 if checksum(answer[:-2]) != answer[-2:]:
                     raise ConnectionError('its answer has a wrong checksum')
-                self._refuse_other(answer[0])
-                return answer[1:-2]
+                return answer[:-2]
 
             yield exchange
-
-    def _refuse_other(self, device: int) -> None:
-        """Raise a `ConnectionError` for an answer of another device, such as of a gateway."""
-        if device != self.device:
-            raise ConnectionError(f'device {device} answers in place of {self.device}')
 
 
 def checksum(frame: bytes) -> bytes:

@@ -37,10 +37,11 @@ class Udp:
     def listen(self, receiver: Link) -> None:
         """Deliver each datagram."""
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
-            if self.is_shared or _is_group(self.host):
+            is_group = _is_group(self.host)
+            if self.is_shared or is_group:
                 link.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            link.bind(('' if _is_group(self.host) else self.host, self.port))
-            if _is_group(self.host):
+            link.bind(('' if is_group else self.host, self.port))
+            if is_group:
                 everywhere = struct.pack('4sl', socket.inet_aton(self.host), socket.INADDR_ANY)
                 link.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, everywhere)
             receiver.opened()

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 
 import aiohttp
 
-from tree_sway.live.transports.event_loop import run_until_over
-from tree_sway.live.transports.http_failure import failure_without_address, without_query
+from tree_sway.live.transports.http_failure import without_query
 from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.loop_transport import LoopTransport
 from tree_sway.live.transports.transport import Message
 
 _LARGEST = 2**18
@@ -22,7 +22,7 @@ _CONNECT_FOR = 5.0
 
 
 @dataclass(frozen=True)
-class WebSocket:
+class WebSocket(LoopTransport):
     """An address of the scheme ``ws`` or ``wss``, and a text to send when it is open."""
 
     url: str
@@ -34,12 +34,7 @@ class WebSocket:
         """Return its address, without the query."""
         return without_query(self.url)
 
-    def listen(self, receiver: Link) -> None:
-        """Deliver each message; a `ConnectionError` for a server that speaks something else."""
-        with failure_without_address():
-            run_until_over(self._follow(receiver), receiver)
-
-    async def _follow(self, receiver: Link) -> None:
+    async def _work(self, receiver: Link) -> None:
         timeout = aiohttp.ClientTimeout(total=None, connect=_CONNECT_FOR)
         async with (
             aiohttp.ClientSession(timeout=timeout, headers=dict(self.headers)) as session,
