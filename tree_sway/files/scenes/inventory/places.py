@@ -120,8 +120,7 @@ def _of_map(columns: InventoryColumns, east: Column, north: Column) -> Places:
 
 def _in_range(values: Floats, most: float) -> bool:
     """Whether all known values, of which there is one, are at most some size."""
-    known = np.abs(values[np.isfinite(values)])
-    return len(known) > 0 and float(known.max()) <= most
+    return 0.0 <= float(np.nanmax(np.abs(values), initial=-1.0)) <= most
 
 
 def _digits(columns: InventoryColumns, index: int) -> float:
@@ -135,28 +134,21 @@ def _digits(columns: InventoryColumns, index: int) -> float:
 
 def _distance(x: Floats, y: Floats) -> float:
     """Mean distance of places, each of which has its share of their rectangle."""
-    is_known = np.isfinite(x) & np.isfinite(y)
-    count = int(is_known.sum())
-    if count < 2:
-        return math.inf
-    wide = max(float(np.ptp(x[is_known])), float(np.ptp(y[is_known])))
-    return wide / math.sqrt(count)
+    known = np.stack([x, y])[:, np.isfinite(x + y)]
+    count = known.shape[1]
+    return float(np.ptp(known, axis=1).max()) / math.sqrt(count) if count > 1 else math.inf
 
 
 def _of_geometries(columns: InventoryColumns, index: int) -> Places:
     """Read a column of points, in degrees or in metres by the size of most."""
-    east = np.full(columns.n_rows, np.nan)
-    north = np.full(columns.n_rows, np.nan)
-    for row, cell in enumerate(columns.texts(index)):
-        point = point_of_cell(cell)
-        if point is not None:
-            east[row] = point.east
-            north[row] = point.north
-        elif cell:
+    cells = columns.texts(index)
+    points = [point_of_cell(cell) for cell in cells]
+    for row, cell in enumerate(cells):
+        if cell and points[row] is None:
             columns.leave_out(row, 'no place', f"'{cell[:40]}' is no latitude and longitude")
-    known = np.abs(east[np.isfinite(east)])
-    is_in_metres = len(known) > 0 and float(np.median(known)) > _MOST_LONGITUDE
-    if is_in_metres:
+    east, north = np.array([point or (math.nan, math.nan) for point in points]).T
+    far = np.abs(east[np.isfinite(east)]) > _MOST_LONGITUDE
+    if 2 * np.count_nonzero(far) > len(far):
         return _near_origin(columns, east, north)
     return _of_degrees(columns, north, east)
 
