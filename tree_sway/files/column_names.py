@@ -42,9 +42,10 @@ COMPASS: dict[str, str] = _KNOWN['compass']
 TIME_PARTS: dict[str, str] = _KNOWN['time_parts']
 """Columns that make a time together, and how."""
 
-_UMLAUTS = str.maketrans(
-    {'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'ç': 'ch', 'º': '°'}
-)
+HEADER: list[str] = _KNOWN['header']
+"""Quantities whose names tell the header of a table."""
+
+_UMLAUTS = str.maketrans(_KNOWN['umlauts'])
 _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
@@ -172,6 +173,11 @@ def rank_of(column: str, quantity: str) -> int | None:
     forms = (*found, *map(_roles, found))
     is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, forms)))
     return len(_NAMES[quantity]) if is_like else None
+
+
+def is_named(column: str, *quantities: str) -> bool:
+    """Whether a column's name is one of any of some quantities, as by `rank_of`."""
+    return any(rank_of(column, each) is not None for each in quantities)
 
 
 def _roles(name: str) -> str:

@@ -53,12 +53,8 @@ _SINCE_1970 = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (5e8, 1.0))
 
 _DAYS = [tuple(row.values()) for row in table_beside(__file__, 'day_counts.csv')]
 """Least and largest number of a count of days, that of 1970-01-01, and its name."""
-_SERIALS = (
-    (25_569.0, "Excel's days since 1900"),
-    (24_107.0, "Excel's since 1904"),
-    (40_587.0, 'modified Julian days'),
-)
-"""Counts of days whose numbers overlap: that of 1970-01-01, and their name."""
+_SERIALS = _DAYS[:3]
+"""Counts of days whose numbers overlap."""
 _MANY_HOURS = 0.2
 """Step of days that counts of seconds have as well, in [d]."""
 
@@ -105,7 +101,8 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
     numbers = [finite(stamp) for stamp in stamps]
     values = np.array([np.nan if number is None else number for number in numbers])
     values = unwrapped(values)
-    size = abs(float(values[np.isfinite(values)][0]))  # what begins at 0 is no date
+    origin = float(values[np.isfinite(values)][0])
+    size = abs(origin)  # what begins at 0 is no date
     days = _days(values, factor)
     if days is not None and days.epoch is not None:
         return days
@@ -114,7 +111,6 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
         factor = next((unit for least, unit in _SINCE_1970 if size >= least), 1.0)
     if size * factor < _SINCE_1970[-1][0]:
         return Times(values * factor, None, note)
-    origin = float(values[np.isfinite(values)][0])
     return Times((values - origin) * factor, origin * factor)
 
 
@@ -154,9 +150,9 @@ def _days(values: Floats, factor: float) -> Times | None:
     first = float(known[0])
     seconds = np.round((values - first) * 86400.0, 3)
     note = f'times are taken as {kind[3]}, from {_day(first - kind[2])}'
-    if first < _DAYS[1][1]:
-        others = [each for each in _SERIALS if each[1] != kind[3]]
-        note += ''.join(f'; as {name} from {_day(first - zero)}' for zero, name in others)
+    if kind in _SERIALS:
+        others = [each for each in _SERIALS if each != kind]
+        note += ''.join(f'; as {each[3]} from {_day(first - each[2])}' for each in others)
     return Times(seconds, (first - kind[2]) * 86400.0, note)
 
 

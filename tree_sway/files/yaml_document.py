@@ -136,23 +136,17 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
     if isinstance(node, yaml.MappingNode):
         known = schema.get('properties', {})
         values = dict[str, Any]()
-        lines = dict[str, int]()
         for key, child in node.value:
-            line = key.start_mark.line + 1
+            what = ''
             if not isinstance(key, yaml.ScalarNode):
-                raise FormatError(
-                    f'{_KINDS[_TYPES[type(key)]]} as a key',
-                    where=f'{source}:{line}',
-                    cure='use a word as the key',
-                )
-            if key.value in values:
-                raise FormatError(
-                    f"key '{key.value}' occurs twice, first in line {lines[key.value]}",
-                    where=f'{source}:{line}',
-                    cure='remove one of them',
-                )
+                what, cure = f'{_KINDS[_TYPES[type(key)]]} as a key', 'use a word as the key'
+            elif key.value in values:
+                first = _node_at(node, [key.value]).start_mark.line + 1
+                what = f"key '{key.value}' occurs twice, first in line {first}"
+                cure = 'remove one of them'
+            if what:
+                raise FormatError(what, where=f'{source}:{key.start_mark.line + 1}', cure=cure)
             values[key.value] = _value(child, known.get(key.value, {}), root, source)
-            lines[key.value] = child.start_mark.line + 1
         return values
     if isinstance(node, yaml.SequenceNode):
         inside = _resolved(schema.get('items', {}), root)

@@ -12,11 +12,11 @@ from __future__ import annotations
 from itertools import zip_longest
 import re
 
-from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.layout import begins, Layout
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.table_file import TextTable
 
-_NAMES = re.compile(r'.*Wind.*\n\s*(?i:Date\s+Time\b.*\bSpeed\s+Dir\b).*\n')
+_NAMES = r'.*Wind.*\n\s*(?i:Date\s+Time\b.*\bSpeed\s+Dir\b).*\n'
 _WORD = re.compile(r'\S+')
 
 
@@ -42,6 +42,4 @@ def _names(above: str, below: str) -> list[str]:
     return names
 
 
-WEATHERLINK_TEXT = Layout(
-    'weatherlink text', lambda lines: _NAMES.match('\n'.join(lines[:3])) is not None, _read
-)
+WEATHERLINK_TEXT = Layout(begins(_NAMES), _read)

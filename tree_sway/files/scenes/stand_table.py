@@ -46,7 +46,6 @@ def read_stand_table(
     *,
     seed: int = 0,
     exact: bool = False,
-    head: str | None = None,
     **fields: Any,
 ) -> Scene:
     """
@@ -54,7 +53,7 @@ def read_stand_table(
 
     The seed is for grown trees and for yaws; further arguments are those of `Scene`. An unknown
     species is replaced as by `species_like`. With ``exact`` each tree is grown by itself, to its
-    own height and diameter. ``head`` is the beginning of the file where it was read before.
+    own height and diameter.
 
     Raises
     ------
@@ -65,7 +64,7 @@ def read_stand_table(
 
     """
     given = dict(kinds or {})
-    table = inventory_table(path, read_head(path) if head is None else head)
+    table = inventory_table(path, read_head(path))
     inventory = inventory_of(table, given)
     notes = list(inventory.notes)
     wood = inventory.wood

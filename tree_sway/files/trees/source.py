@@ -23,7 +23,7 @@ from tree_sway.files.scenes.inventory.inventory_file import lacking_columns
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
 from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table
 from tree_sway.files.text_file import read_head
-from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.imported_tree import said_of, TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 from tree_sway.files.trees.tree_options import same
 from tree_sway.files.yaml_document import begins_with_key
@@ -84,10 +84,9 @@ def open_tree(
     path = path_of(text)
     if not path.exists():
         raise unknown_tree(text)
-    head = read_head(path) if path.is_file() else None
-    if head is not None:
-        _refuse_several_trees(path, head)
-    found = read_tree(path, head=head, wood=wood, in_leaf=in_leaf, **options).checked()
+    if path.is_file():
+        _refuse_several_trees(path)
+    found = read_tree(path, wood=wood, in_leaf=in_leaf, **options).checked()
     if warn:
         _warn(found.faults)
     return found
@@ -111,9 +110,10 @@ def unknown_tree(name: str) -> FormatError:
     return FormatError(f"no tree '{name}'", cure=cure)
 
 
-def _refuse_several_trees(path: Path, head: str) -> None:
+def _refuse_several_trees(path: Path) -> None:
     """Raise a `FormatError` for a forest or a stand, with how to get one of its trees."""
     where = str(path)
+    head = read_head(path)
     if begins_with_key(path, head, 'trees'):
         with expected(path, 'scene'):
             raise FormatError(
@@ -187,15 +187,15 @@ def _scene(
     if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
         read = partial(read_scene_yaml, path, opened, exact=exact)
     elif is_stand_table(head, path):
-        read = partial(read_stand_table, path, seed=seed, exact=exact, head=head)
+        read = partial(read_stand_table, path, seed=seed, exact=exact)
     if read is None:
         try:
-            files = [each.checked() for each in read_trees(path, head=head, **asked, **options)]
+            files = [each.checked() for each in read_trees(path, **asked, **options)]
         except UnknownFormatError:
             lacking = lacking_columns(head)
             if lacking is None or len(lacking) == len(INVENTORY):
                 raise
-            return read_stand_table(path, seed=seed, exact=exact, head=head)
+            return read_stand_table(path, seed=seed, exact=exact)
         return scene_of_files(files, path.stem)
     if options:
         raise ParameterError(
@@ -223,6 +223,4 @@ def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
         trees.append(placed)
     if len(files) == 1:
         return Scene(trees, one.tree.name, one.source, one.notes, faults=one.faults)
-    notes = [f'{each.tree.name}: {note}' for each in files for note in each.notes]
-    faults = [f'{each.tree.name}: {fault}' for each in files for fault in each.faults]
-    return Scene(trees, name, one.source, tuple(notes), faults=tuple(faults))
+    return Scene(trees, name, one.source, **said_of((each.tree.name, each) for each in files))

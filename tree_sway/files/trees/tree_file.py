@@ -33,7 +33,6 @@ def read_trees(
     /,
     format: str | None = None,  # noqa: A002
     *,
-    head: str | None = None,
     wood: Callable[[Species], Species] = same,
     in_leaf: bool | None = None,
     **options: Any,
@@ -41,9 +40,9 @@ def read_trees(
     """
     Read every tree of a file, of a given format or found from content and suffix.
 
-    Options are those of `TreeOptions`. ``head`` is the beginning of the file if it is known;
-    ``wood`` returns the species to use in place of that of the file; ``in_leaf`` is the season, by
-    the species if None, in which a limb that cannot carry itself is thickened, where that is so.
+    Options are those of `TreeOptions`. ``wood`` returns the species to use in place of that of the
+    file; ``in_leaf`` is the season, by the species if None, in which a limb that cannot carry
+    itself is thickened, where that is so.
 
     Raises
     ------
@@ -56,7 +55,7 @@ def read_trees(
 
     """
     with expected(path, 'tree'):
-        chosen = format_of(path, format, TREE_FORMATS, 'tree', head=head)
+        chosen = format_of(path, format, TREE_FORMATS, 'tree')
         chosen.refuse_others(options, [each.name for each in fields(TreeOptions)])
         wanted = TreeOptions(**{**chosen.defaults, **options})
         content = chosen.read(path)
@@ -65,9 +64,10 @@ def read_trees(
     else:
         files = [tree_of_cylinders(wanted.in_metres(each), path) for each in content]
     if len({each.tree.name for each in files}) < len(files):
-        for number, each in enumerate(files, start=1):
-            tree = replace(each.tree, name=f'{each.tree.name}{number}')
-            files[number - 1] = replace(each, tree=tree)
+        files = [
+            replace(each, tree=replace(each.tree, name=f'{each.tree.name}{number}'))
+            for number, each in enumerate(files, start=1)
+        ]
     if wanted.tree not in range(len(files) + 1):
         raise ParameterError(
             f'tree {wanted.tree} of {len(files)}', cure=f'give 1 to {len(files)}, or 0 for all'

@@ -13,7 +13,8 @@ from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import COMPASS
 from tree_sway.files.text_file import finite
 
-FULL_CIRCLE = 401.0
+_CALM = 1e-9
+_FULL_CIRCLE = 401.0
 """Largest direction in degrees: a little more than a circle, and less than the codes of errors."""
 
 _POINTS = 'N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW'.split()
@@ -39,12 +40,17 @@ def degrees_of(cells: Sequence[str]) -> Floats:
     return np.array([point if number is None else number for number, point in pairs])
 
 
-def velocity_to(speed: Floats, bearing: Floats) -> Floats:
-    """Return air of a speed in [m/s] that moves to a bearing from north in [rad], (n, 3)."""
-    velocity = np.zeros((len(speed), 3))
-    velocity[:, 0] = speed * np.sin(bearing)
-    velocity[:, 1] = speed * np.cos(bearing)
-    return velocity
+def velocity_from(speed: Floats, degrees: Floats, turn: float = 0.0) -> Floats:
+    """
+    Return the wind of speeds [m/s] and directions that it comes from, east, north, up, (n, 3).
+
+    It is NaN where either is none; in a calm the direction may be missing. Directions are counted
+    from a ``turn`` [rad] before north.
+    """
+    degrees = np.where(np.isnan(degrees) & (np.abs(speed) < _CALM), 0.0, degrees)
+    is_good = (speed >= 0.0) & (np.abs(degrees) < _FULL_CIRCLE)
+    bearing = np.radians(np.where(is_good, degrees, np.nan)) - turn
+    return -np.column_stack([speed * np.sin(bearing), speed * np.cos(bearing), 0.0 * bearing])
 
 
 def _point(cell: str) -> str:

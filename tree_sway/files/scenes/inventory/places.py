@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 import math
 import re
 
@@ -42,27 +41,12 @@ _CLOSEST = 0.1
 """Mean distance of trees below which places of `_FEW_DIGITS` are degrees too [m]."""
 
 
-@dataclass(frozen=True)
-class Places:
-    """
-    Places of trees.
-
-    Parameters
-    ----------
-    x, y
-        East and north of each tree [m], (n,); NaN without a place.
-    is_in_states
-        Whether all are in the United States.
-
-    """
-
-    x: Floats
-    y: Floats
-    is_in_states: bool = False
+Places = tuple[Floats, Floats]
+"""East and north of each tree [m], (n,) each; NaN without a place."""
 
 
 def places_of(columns: InventoryColumns) -> Places | None:
-    """Return the places of all rows; None without columns of them."""
+    """Return the places of all rows, and note whether they are in the United States; or None."""
     by_degrees = columns.find('latitude', 'longitude')
     by_metres = columns.find('x', 'y')
     if by_degrees is not None:
@@ -159,7 +143,7 @@ def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) 
     is_known &= _is_fixed(is_known, latitude, longitude, 1.0)
     if not is_known.any():
         nowhere = np.full(len(latitude), np.nan)
-        return Places(nowhere, nowhere)
+        return nowhere, nowhere
     columns.note('east and north are counted from the first tree')
     first = int(np.argmax(is_known))
     parallel_radius = _EARTH_RADIUS * math.cos(math.radians(latitude[first]))
@@ -167,8 +151,8 @@ def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) 
     east -= 360.0 * np.round(east / 360.0)  # the short way round
     x = parallel_radius * np.radians(east)
     y = _EARTH_RADIUS * np.radians(latitude - latitude[first])
-    is_in_states = bool(are_in_states(latitude, longitude)[is_known].all())
-    return Places(np.where(is_known, x, np.nan), np.where(is_known, y, np.nan), is_in_states)
+    columns.is_in_states = bool(are_in_states(latitude, longitude)[is_known].all())
+    return np.where(is_known, x, np.nan), np.where(is_known, y, np.nan)
 
 
 def _is_fixed(known: NDArray[np.bool_], x: Floats, y: Floats, far: float) -> NDArray[np.bool_]:
@@ -186,9 +170,9 @@ def _near_origin(columns: InventoryColumns, x: Floats, y: Floats) -> Places:
     y = np.where(is_known, y, np.nan)
     farthest = np.nanmax(np.abs([x, y]), initial=0.0)
     if farthest <= _FAR:
-        return Places(x, y)
+        return x, y
     east = float(np.floor(np.nanmin(x)))
     north = float(np.floor(np.nanmin(y)))
     if east or north:
         columns.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
-    return Places(x - east, y - north)
+    return x - east, y - north

@@ -17,7 +17,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.column_names import folded
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES, why_missing
-from tree_sway.files.scenes.inventory.places import Places, places_of
+from tree_sway.files.scenes.inventory.places import places_of
 from tree_sway.files.scenes.inventory.sizes import diameters_of, fill_heights, heights_of
 from tree_sway.files.scenes.inventory.species_names import species_of_rows
 from tree_sway.files.table_file import TextTable
@@ -123,20 +123,19 @@ def inventory_of(
         raise table.error(why_missing(table) or 'no column of an inventory', cure=cure)
     columns = InventoryColumns(table)
     found = places_of(columns)
-    zero = np.zeros(columns.n_rows)
-    places = Places(zero, zero) if found is None else found
+    x, y = np.zeros((2, columns.n_rows)) if found is None else found
     _leave_out_dead(columns)
-    names, wood = species_of_rows(columns, given, is_in_states=places.is_in_states)
+    names, wood = species_of_rows(columns, given)
     keys = [wood[each].key if each in wood else each for each in names]
-    diameter = diameters_of(columns, places.is_in_states)
-    height = heights_of(columns, diameter, places.is_in_states)
-    for row in np.flatnonzero(~np.isfinite(places.x + places.y)).tolist():
+    diameter = diameters_of(columns)
+    height = heights_of(columns, diameter)
+    for row in np.flatnonzero(~np.isfinite(x + y)).tolist():
         columns.leave_out(row, 'no place', _why_no_place(columns, row))
     is_found = fill_heights(columns, height, diameter, keys)
     kept = np.flatnonzero(columns.is_kept).tolist()
     columns.note(columns.why_left_out())
     if found is not None:
-        columns.note(_double(columns, kept, [places.x, places.y, names, height, diameter]))
+        columns.note(_double(columns, kept, [x, y, names, height, diameter]))
     if not kept:
         raise FormatError(
             f'no tree is left: {columns.why_left_out() or "no row"}',
@@ -160,8 +159,8 @@ def inventory_of(
         tuple(tree_names),
         of_kept(names),
         wood,
-        places.x[kept],
-        places.y[kept],
+        x[kept],
+        y[kept],
         np.nan_to_num(z[kept]),
         yaw[kept],
         height[kept],

@@ -42,7 +42,7 @@ _MM = 0.001
 _SAID = {1.0: 'm', _CM: 'cm', _MM: 'mm', _INCH: 'inches', _FOOT: 'feet'}
 
 
-def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats:
+def diameters_of(columns: InventoryColumns) -> Floats:
     """Diameters at breast height [m], NaN without one."""
     found = np.full(columns.n_rows, np.nan)
     for quantity, over in (('diameter', 1.0), ('girth', math.pi)):
@@ -56,7 +56,7 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats:
             values = np.hypot(values, np.nan_to_num(columns.numbers(each, unit=unit)[0]))
         factor = unit_factor('length', unit)
         if factor is None:
-            factor, why = _stem_unit(values / over, columns, is_in_states)
+            factor, why = _stem_unit(values / over, columns)
             name = columns.table.columns[index]
             columns.note(f'{name} is taken as {_SAID[factor]}{why}')
         columns.has_inches |= factor == _INCH
@@ -79,7 +79,7 @@ def _note_impossible(columns: InventoryColumns, index: int, diameter: Floats) ->
     )
 
 
-def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) -> tuple[float, str]:
+def _stem_unit(values: Floats, columns: InventoryColumns) -> tuple[float, str]:
     """Choose the unit of diameters that have none, and say why if it is inches."""
     positive = values[values > 0.0]
     middle = _middle(values)
@@ -89,7 +89,7 @@ def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) ->
         return 1.0, ''
     if middle > 250.0:
         return _MM, ''
-    if is_in_states:
+    if columns.is_in_states:
         return _INCH, ', as the trees stand in the United States'
     heights = _read_heights(columns)
     if heights is None:
@@ -142,7 +142,7 @@ def _read_heights(columns: InventoryColumns) -> tuple[int, Floats, str] | None:
     return first
 
 
-def heights_of(columns: InventoryColumns, diameter: Floats, is_in_states: bool = False) -> Floats:
+def heights_of(columns: InventoryColumns, diameter: Floats) -> Floats:
     """Heights [m], NaN without one."""
     heights = _read_heights(columns)
     if heights is None:
@@ -150,6 +150,7 @@ def heights_of(columns: InventoryColumns, diameter: Floats, is_in_states: bool =
     index, values, unit = heights
     factor = unit_factor('length', unit)
     name = columns.table.columns[index]
+    is_in_states = columns.is_in_states
     if factor is None:
         factor = 1.0
         if unit:

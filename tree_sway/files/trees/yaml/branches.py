@@ -118,10 +118,11 @@ def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
         raise FormatError(what, where=where, cure='give one of the two')
     if 'nodes' in branch:
         nodes = np.array(branch['nodes'], dtype=np.float64)
-        return nodes[:-1, :3], nodes[1:, :3], np.stack([nodes[:-1, 3], nodes[1:, 3]], axis=1)
+        return nodes[:-1, :3], nodes[1:, :3], np.column_stack([nodes[:-1, 3], nodes[1:, 3]])
     links = branch['segments']
-    start = np.array([link['start'] for link in links], dtype=np.float64)
-    end = np.array([link['end'] for link in links], dtype=np.float64)
+    start, end = (
+        np.array([link[each] for link in links], dtype=np.float64) for each in ('start', 'end')
+    )
     return start, end, np.array([[1.0, 1.0] * np.array(link['diameter']) for link in links])
 
 
