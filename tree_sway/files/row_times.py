@@ -103,8 +103,9 @@ def row_times(
     """Return the times of some rows, in UTC where the table says its zone."""
     cells = [table.cells(column, rows) for column in columns]
     stamps = cells[0]
-    if form:
-        stamps = [_joined(form, parts) for parts in zip(*cells, strict=True)]
+    if form:  # a date alone may have a midnight behind it
+        parts = zip(*cells, strict=True)
+        stamps = [form.format(day.partition('T00:')[0], *others) for day, *others in parts]
     times = _of_one_year(times_of(stamps, factor))
     has_unit = form or factor != 1.0
     is_dated = times.epoch is not None
@@ -119,11 +120,6 @@ def row_times(
     if zone is None or not is_dated:
         return times
     return _in_utc(times, zone[1])
-
-
-def _joined(form: str, parts: Sequence[str]) -> str:
-    """Return the date of its parts; a date alone may have a midnight behind it."""
-    return form.format(parts[0].partition('T00:')[0], *parts[1:])
 
 
 def _of_one_year(times: Times) -> Times:

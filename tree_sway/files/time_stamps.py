@@ -64,7 +64,6 @@ _LONGEST_STEP = 100.0
 """Longest step over that number, in usual steps."""
 
 _NONE = np.iinfo(np.int64).min
-_DAY = 86_400_000_000
 _1970 = date(1970, 1, 1)
 
 
@@ -198,18 +197,15 @@ def _order(texts: Sequence[str]) -> tuple[bool, str]:
         return False, ''
     if any(int(each['second']) > 12 for each in found):
         return True, ''
-    steps = [_total_step(found, is_month_first) for is_month_first in (True, False)]
+    steps = []  # the sum of all is smallest in the right order
+    for is_month_first in (True, False):
+        times = [_general(each, is_month_first) for each in found]
+        steps.append(sum(abs(b - a) for a, b in pairwise(times)))
     if steps[0] != steps[1]:
         return steps[0] < steps[1], ''
     is_american = any(each['half'] for each in found)
     order = 'month, day' if is_american else 'day, month'
     return is_american, f'dates such as {first[:20]} are taken as {order}'
-
-
-def _total_step(found: Sequence[re.Match[str]], is_month_first: bool) -> int:
-    """Sum of all steps of time, which is smallest in the right order of day and month."""
-    times = [_general(each, is_month_first) for each in found]
-    return sum(abs(b - a) for a, b in pairwise(times))
 
 
 def _microseconds(stamp: str, is_month_first: bool) -> int:
@@ -218,7 +214,7 @@ def _microseconds(stamp: str, is_month_first: bool) -> int:
     if match is not None:
         with suppress(ValueError):  # 24:00, a month 13 or a February 30
             microseconds = int(np.datetime64(match[1], 'us').astype(np.int64))
-            return microseconds - 1_000_000 * (_offset(match[2]) if match[2] else 0)
+            return microseconds - 1_000_000 * _offset(match[2])
     forms = (form.fullmatch(stamp) for form in _FORMS)
     return max((_general(each, is_month_first) for each in forms if each), default=_NONE)
 
@@ -226,8 +222,8 @@ def _microseconds(stamp: str, is_month_first: bool) -> int:
 def _general(match: re.Match[str], is_month_first: bool) -> int:
     """Microseconds after 1970-01-01 of a date in any order; `_NONE` if it is impossible."""
     try:
-        day = date(*_year_month_day(match, is_month_first))
-    except ValueError:
+        day = _date(match, is_month_first)
+    except (ValueError, OverflowError):
         return _NONE
     hour = int(match['hour'] or 0)
     minute = int(match['minute'] or 0)
@@ -238,31 +234,28 @@ def _general(match: re.Match[str], is_month_first: bool) -> int:
         hour = hour % 12 + (12 if match['half'][0] in 'pP' else 0)
     if hour > 24 or minute > 59 or seconds >= 60.0 or (hour == 24 and minute):
         return _NONE
-    days = (day - _1970) // timedelta(days=1)
-    zone = match['zone']
-    offset = _offset(zone) if zone and zone[0] in '+-' else 0
-    whole = 3600 * hour + 60 * minute - offset
-    return days * _DAY + whole * 1_000_000 + round(seconds * 1e6)
+    days = (day - _1970).days
+    whole = 86400 * days + 3600 * hour + 60 * minute - _offset(match['zone'])
+    return whole * 1_000_000 + round(seconds * 1e6)
 
 
-def _year_month_day(match: re.Match[str], is_month_first: bool) -> tuple[int, int, int]:
+def _date(match: re.Match[str], is_month_first: bool) -> date:
     year = int(match['year'])
     if len(match['year']) == 2:
         year += 2000 if year < 70 else 1900
     if match.re is _ORDERED:
         one, two = int(match['first']), int(match['second'])
-        return (year, one, two) if is_month_first else (year, two, one)
+        return date(year, one, two) if is_month_first else date(year, two, one)
     if 'of_year' in match.re.groupindex:
-        day = date(year, 1, 1) + timedelta(days=int(match['of_year']) - 1)
-        return day.year, day.month, day.day
+        return date(year, 1, 1) + timedelta(days=int(match['of_year']) - 1)
     month = match['month'].lower()
     number = _MONTHS.index(month) + 1 if month.isalpha() else int(month)
-    return year, number, int(match['day'])
+    return date(year, number, int(match['day']))
 
 
-def _offset(zone: str) -> int:
-    """Seconds that a zone is ahead of UTC."""
-    if zone == 'Z':
+def _offset(zone: str | None) -> int:
+    """Seconds that a zone is ahead of UTC; 0 without one."""
+    if not zone or zone[0] not in '+-':
         return 0
     sign = -1 if zone[0] == '-' else 1
     minutes = int(zone[-2:]) if len(zone) > 3 else 0

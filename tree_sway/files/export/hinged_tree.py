@@ -210,7 +210,7 @@ def _drag_area(simulator: SwaySimulator) -> Floats:
 
 class _Points(NamedTuple):
     """
-    Points of integration on both halves of the segments, (n, 2, `_N_POINTS`).
+    Points of integration on both halves of the segments, (n, 2 `_N_POINTS`).
 
     ``share``: place along the segment as a share of its length; ``part``: length that the point
     stands for [m]; ``diameter`` [m].
@@ -224,13 +224,12 @@ class _Points(NamedTuple):
 def _points(tree: Tree) -> _Points:
     """Return the points of a tree."""
     point, weight = np.polynomial.legendre.leggauss(_N_POINTS)
-    share = np.stack([0.25 + 0.25 * point, 0.75 + 0.25 * point])[None]
+    share = np.concatenate([0.25 + 0.25 * point, 0.75 + 0.25 * point])
     length, base, tip = (
-        each[:, None, None] for each in (tree.length, tree.base_diameter, tree.tip_diameter)
+        each[:, None] for each in (tree.length, tree.base_diameter, tree.tip_diameter)
     )
-    part = length * 0.25 * weight
-    diameter = base + (tip - base) * share
-    return _Points(share, part, diameter)
+    part = length * 0.25 * np.tile(weight, 2)
+    return _Points(share, part, base + (tip - base) * share)
 
 
 def _springs(tree: Tree, wood: Species, root_stiffness: float) -> Floats:
@@ -251,10 +250,10 @@ def _compliance(tree: Tree, modulus: float) -> Floats:
     branch = tree.branch_of_segment
     # The moment is constant in a segment with children, and that of a uniform load in the last.
     to_end = 1.0 - points.share
-    has_children = np.isin(np.arange(tree.n_segments), parent)[:, None, None]
+    has_children = np.isin(np.arange(tree.n_segments), parent)[:, None]
     moment = np.where(has_children, 1.0, to_end**2)
-    at_start = (to_end * moment * bend).sum(axis=(1, 2))
-    at_end = (points.share * bend).sum(axis=(1, 2))
+    at_start = (to_end * moment * bend).sum(axis=1)
+    at_end = (points.share * bend).sum(axis=1)
     is_last_of_branch = np.isin(parent, tree.branch_first[1:] - 1)
     continues = (branch == branch[parent]) | is_last_of_branch
     return at_start + np.where(continues & (parent >= 0), at_end[parent], 0.0)
@@ -271,13 +270,13 @@ class _Bodies(NamedTuple):
 def _bodies(tree: Tree, density: float, leaf_line: Floats) -> _Bodies:
     """Bodies of the segments with leaves of a mass per length [kg/m], (n,)."""
     points = _points(tree)
-    along = tree.length[:, None, None] * points.share
+    along = tree.length[:, None] * points.share
     wood = density * np.pi / 4.0 * points.diameter**2 * points.part
-    total = wood + leaf_line[:, None, None] * points.part
-    mass = total.sum(axis=(1, 2))
-    centre = (total * along).sum(axis=(1, 2)) / mass
-    disc = (wood * points.diameter**2).sum(axis=(1, 2)) / 16.0
-    about_start = (total * along**2).sum(axis=(1, 2))
+    total = wood + leaf_line[:, None] * points.part
+    mass = total.sum(axis=1)
+    centre = (total * along).sum(axis=1) / mass
+    disc = (wood * points.diameter**2).sum(axis=1) / 16.0
+    about_start = (total * along**2).sum(axis=1)
     across = about_start - mass * centre**2 + disc
     inertia = np.column_stack([2.0 * disc, across])
     return _Bodies(mass, centre, inertia)

@@ -20,7 +20,6 @@ import re
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.rotation import quaternion_rotated
@@ -296,16 +295,17 @@ def _checked_times(table: TextTable, times: Times, values: Floats, column: int |
         )
     rows = np.flatnonzero(is_time)
     steps = np.diff(seconds[rows])
-    if _are_most(steps < 0.0, 0.1):
+    n_back = np.count_nonzero(steps < 0.0)
+    if n_back > 0.1 * len(steps):
         raise table.error(
-            f'time goes back in {np.count_nonzero(steps < 0.0)} of {len(rows)} rows',
+            f'time goes back in {n_back} of {len(rows)} rows',
             cure='put the rows in the order of time',
         )
     changes = (np.diff(values[rows], axis=0) != 0.0).any(axis=1)
-    stands = (steps == 0.0) & changes
-    if _are_most(stands, 0.5):
+    n_stand = np.count_nonzero((steps == 0.0) & changes)
+    if n_stand > 0.5 * len(steps):
         raise table.error(
-            f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before',
+            f'{n_stand} of {len(rows)} rows have the time of the row before',
             cure='export times with fractions of a second, and one sensor alone',
         )
     step = float(np.median(steps)) if len(steps) else 0.0
@@ -324,7 +324,3 @@ def _checked_times(table: TextTable, times: Times, values: Floats, column: int |
             'more',
         )
     return times
-
-
-def _are_most(rows: NDArray[np.bool_], share: float) -> bool:
-    return bool(np.count_nonzero(rows) > share * max(len(rows), 1))

@@ -215,16 +215,13 @@ def increasing(time: Floats) -> NDArray[np.bool_]:
     ends: list[float] = []
     rank = np.empty(len(time), dtype=np.int64)
     for index, value in enumerate(time.tolist()):
-        rank[index] = bisect_left(ends, value)
-        if rank[index] == len(ends):
-            ends.append(value)
-        else:
-            ends[rank[index]] = value
+        rank[index] = place = bisect_left(ends, value)
+        ends[place : place + 1] = [value]  # a new one at the end
     wanted = len(ends) - 1
     bound = float('inf')
-    for index in range(len(time) - 1, -1, -1):
+    for index in reversed(range(len(time))):
         keep[index] = rank[index] == wanted and time[index] < bound
         if keep[index]:
-            wanted = wanted - 1
+            wanted -= 1
             bound = float(time[index])
     return keep

@@ -75,11 +75,3 @@ def missing_columns(table: TextTable) -> list[str]:
         for what, choices in INVENTORY.items()
         if not any(all(map(table.find_all, choice.split())) for choice in choices)
     ]
-
-
-def why_missing(table: TextTable) -> str:
-    """Return which columns of an inventory a table lacks, empty if none or all."""
-    missing = missing_columns(table)
-    if not missing or len(missing) == len(INVENTORY):
-        return ''
-    return f'no column for {" and none for ".join(missing)} among {", ".join(table.columns[:20])}'

@@ -14,9 +14,9 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.species import Species
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import folded
+from tree_sway.files.column_names import folded, INVENTORY
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
-from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES, why_missing
+from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES
 from tree_sway.files.scenes.inventory.places import places_of
 from tree_sway.files.scenes.inventory.sizes import diameters_of, fill_heights, heights_of
 from tree_sway.files.scenes.inventory.species_names import species_of_rows
@@ -114,13 +114,14 @@ def inventory_of(
     column, or if no row is left.
     """
     given = given or {}
-    missing = [each for each in missing_columns(table) if each != SPECIES]
-    if not needs_place:
-        missing = [each for each in missing if 'place' not in each]
-    if missing:
+    missing = missing_columns(table)
+    if any(each != SPECIES and (needs_place or 'place' not in each) for each in missing):
+        what = f'no column for {" and none for ".join(missing)} among '
+        what += ', '.join(table.columns[:20])
         cure = 'give a row for each tree, with place, species, and height or dbh'
         cure = f'name them so in the header, if it is an inventory: {cure} (doc/trees.md)'
-        raise table.error(why_missing(table) or 'no column of an inventory', cure=cure)
+        is_one = len(missing) < len(INVENTORY)
+        raise table.error(what if is_one else 'no column of an inventory', cure=cure)
     columns = InventoryColumns(table)
     found = places_of(columns)
     x, y = np.zeros((2, columns.n_rows)) if found is None else found

@@ -148,12 +148,9 @@ def _arrays(variables: dict[str, Any]) -> Iterator[tuple[str, Floats]]:
             yield from _arrays(inside)
         elif isinstance(value, np.ndarray) and value.ndim == 2:
             for array in (value, value.T):
-                n_rows, n_columns = array.shape
-                if n_rows == 0 or not _LEAST_COLUMNS <= n_columns <= _MOST_COLUMNS:
-                    continue
-                table = array.astype(np.float64)
-                if _are_cylinders(table):
-                    yield name, table[:, : len(_COLUMNS)]
+                has_width = _LEAST_COLUMNS <= array.shape[1] <= _MOST_COLUMNS
+                if len(array) and has_width and _are_cylinders(array.astype(np.float64)):
+                    yield name, array[:, : len(_COLUMNS)].astype(np.float64)
                     break
 
 
