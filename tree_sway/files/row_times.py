@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from datetime import datetime, timedelta
 import re
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
@@ -111,11 +110,11 @@ def row_times(
     is_dated = times.epoch is not None
     if not (has_unit or is_dated or times.note):
         note = _doubt(table, columns[0], times)
-        times = replace(times, note=note)
+        times = times._replace(note=note)
     names = [table.columns[column] for column in columns]
     if not form and names[0] and not is_named(names[0], 'time'):
         said = f'{names[0]} is taken as the time, by its dates'
-        times = replace(times, note='; '.join(filter(None, (said, times.note))))
+        times = times._replace(note='; '.join(filter(None, (said, times.note))))
     zone = _ZONE.search(' '.join(names))
     if zone is None or not is_dated:
         return times
@@ -140,7 +139,7 @@ def _of_one_year(times: Times) -> Times:
     if not (is_apart and rises):
         return times
     note = f'months of several years are taken as those of {years[0]}'
-    return replace(times, seconds=seconds, note=note)
+    return times._replace(seconds=seconds, note=note)
 
 
 def _doubt(table: TextTable, column: int, times: Times) -> str:
@@ -168,7 +167,7 @@ def _in_utc(times: Times, name: str) -> Times:
     try:
         zone = ZoneInfo(name)
     except (ZoneInfoNotFoundError, ValueError):
-        return replace(times, note=f'zone {name} is not known here; times are left as they are')
+        return times._replace(note=f'zone {name} is not known here; times are left as they are')
     epoch = times.epoch or 0.0
     begin = datetime(1970, 1, 1, tzinfo=zone) + timedelta(seconds=epoch)
     offsets = np.zeros(len(times.seconds))
@@ -177,4 +176,4 @@ def _in_utc(times: Times, name: str) -> Times:
     offsets[known] = [(each.utcoffset() or timedelta()).total_seconds() for each in moments]
     shift = float(offsets[known][:1].sum())
     seconds = times.seconds - (offsets - shift)
-    return replace(times, seconds=seconds, epoch=epoch - shift)
+    return times._replace(seconds=seconds, epoch=epoch - shift)

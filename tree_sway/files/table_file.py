@@ -15,7 +15,7 @@ import csv
 from dataclasses import dataclass, replace
 from functools import partial
 import re
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,8 +57,7 @@ _MUCH = 4.0
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 
 
-@dataclass(frozen=True, slots=True)
-class Column:
+class Column(NamedTuple):
     """Place of a column in a table, and the factor from its unit to SI."""
 
     index: int

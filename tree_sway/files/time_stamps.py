@@ -14,11 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from datetime import date, timedelta
 from itertools import pairwise
 import math
 import re
+from typing import NamedTuple
 
 import numpy as np
 
@@ -67,8 +67,7 @@ _NONE = np.iinfo(np.int64).min
 _1970 = date(1970, 1, 1)
 
 
-@dataclass(frozen=True)
-class Times:
+class Times(NamedTuple):
     """
     Times of rows.
 

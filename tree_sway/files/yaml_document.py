@@ -12,12 +12,11 @@ clearer.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from importlib.resources import files
 import json
 from pathlib import Path
 import re
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
@@ -57,8 +56,7 @@ def tree_schema() -> Schema:
     return packaged_schema('tree_schema.json')
 
 
-@dataclass(frozen=True)
-class YamlDocument:
+class YamlDocument(NamedTuple):
     """Checked values of a YAML text: numbers where the schema has them, else texts."""
 
     values: dict[str, Any]

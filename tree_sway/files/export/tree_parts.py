@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.species import Color, look_of
@@ -13,8 +13,7 @@ from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
 from tree_sway.files.export.tree_mesh import crown_mesh, TreeMesh, wood_mesh
 
 
-@dataclass(frozen=True)
-class TreePart:
+class TreePart(NamedTuple):
     """
     Mesh of a part of a tree, and its surface.
 

@@ -138,7 +138,6 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             beside = object_of(node.get('units')) or _said_units(node) or units
             own_units = units | object_of(node.get(f'{name}_units', beside))
             yield from _tables(each, own_units, source, depth + 1)
-        own = {}
         if columns := spread_rows(node, own):  # after those of a part of it
             yield _records(columns, units | own, source)
 

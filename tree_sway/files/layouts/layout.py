@@ -5,14 +5,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 import re
+from typing import NamedTuple
 
 from tree_sway.files.table_file import TextTable
 
 
-@dataclass(frozen=True, slots=True)
-class Layout:
+class Layout(NamedTuple):
     """
     A layout of a table of wind.
 

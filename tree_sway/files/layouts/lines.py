@@ -23,7 +23,11 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.tables import table_beside
 
 _LINES = {
-    each['name']: {**each, 'line': re.compile(each['line'], re.ASCII)}
+    each['name']: {
+        **each,
+        'line': re.compile(each['line'], re.ASCII),
+        'units': dict(unit.split('=') for unit in each['units'].split(';')),
+    }
     for each in table_beside(__file__, 'lines.csv')
 }
 _SPEEDS = ('wind_speed', 'gust')
@@ -44,12 +48,8 @@ def _rows(lines: Sequence[str], known: dict[str, Any]) -> Iterator[tuple[int, st
             yield number, text
 
 
-def _units(known: dict[str, Any]) -> dict[str, str]:
-    return dict(each.split('=') for each in known['units'].split(';'))
-
-
 def _has_form(lines: Sequence[str], known: dict[str, Any]) -> bool:
-    units = _units(known)
+    units = known['units']
     found = [known['line'].fullmatch(text) for _, text in islice(_rows(lines, known), 2)]
     said = [each.groupdict().get('unit', 'm/s') for each in found if each]
     return 0 < len(found) == len(said) and all(
@@ -71,9 +71,9 @@ def _read(lines: list[str], source: str, known: dict[str, Any]) -> TextTable:
         cells = dict.fromkeys(names, '') | cells
         row = ['' if missing.fullmatch(cells[name]) else cells[name] for name in names]
         rows[number] = ['', *(cell.replace(',', '.') for cell in row)]
-    units = _units(known)
+    units = known['units']
     if unit:
-        units |= dict.fromkeys(_SPEEDS, units.get(unit, unit))
+        units = units | dict.fromkeys(_SPEEDS, units.get(unit, unit))
     columns = [known['name'], *names]
     told = [units.get(name, '') for name in columns]
     return table_of_cells(columns, rows.values(), source, [*rows], told)

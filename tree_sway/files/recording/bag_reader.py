@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Collection
-from dataclasses import dataclass
 import io
 from pathlib import Path
 import struct
@@ -24,8 +23,7 @@ _BODY = 4
 """Bytes of encapsulation, from which on numbers are aligned."""
 
 
-@dataclass(frozen=True)
-class BagContent:
+class BagContent(NamedTuple):
     """
     Contents of a bag: types of topics as ``package/msg/Name``, and the wanted messages.
 

@@ -34,10 +34,9 @@ from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.row_winds import winds_of_components, winds_of_directions
 from tree_sway.files.wind.speed_units import speed_factor
 from tree_sway.files.wind.station_means import filled_means
-from tree_sway.files.zipped import tables_in
+from tree_sway.files.zipped import table_in
 
 _COMPONENTS = ('wind_x', 'wind_y', 'wind_z')
-_HEAD = 200
 _HEIGHT = re.compile(
     r'(?:^|(?<=[ _@]))\W?(?:at? )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))|'
     r'(?<=[a-z])(\d+)m[NESW]{0,2}(?=$| ?[\[(])'
@@ -75,9 +74,7 @@ def read_table_wind(
     WindConvention(direction_convention or 'to')  # refused before the file is read
     if direction is not None and not 0.0 <= direction <= 360.0:
         raise ParameterError(f'direction is {direction:g} degrees', cure='give 0 to 360')
-    tables = list(tables_in(path))
-    is_wind = (each for each in tables if looks_like_wind('\n'.join(each[1][:_HEAD])))
-    name, lines = next(is_wind, tables[0])
+    name, lines = table_in(path, looks_like_wind)
     whole = table_of(lines, name)
     whole.refuse_several()
     table, at_height = _at_one_height(whole)
