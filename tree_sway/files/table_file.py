@@ -15,7 +15,7 @@ import csv
 from dataclasses import dataclass, replace
 from functools import partial
 import re
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +57,8 @@ _MUCH = 4.0
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 
 
-class Column(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Column:
     """Place of a column in a table, and the factor from its unit to SI."""
 
     index: int
@@ -156,12 +157,10 @@ class TextTable:
     def values(self, indices: Iterable[int]) -> Floats:
         """Numbers in some columns, NaN where a cell is not a number, (n, k)."""
         columns = list(indices)
-        result = np.full((len(self.texts), len(columns)), np.nan)
+        result = np.empty((len(self.texts), len(columns)))
         for row, text in enumerate(self.texts):
             cells = self.split(text)
-            for place, index in enumerate(columns):
-                value = finite(cells[index]) if index < len(cells) else None
-                result[row, place] = np.nan if value is None else value
+            result[row] = [finite(cells[each]) if each < len(cells) else None for each in columns]
         return result
 
     def strict(self, names: Sequence[str]) -> Floats:
@@ -225,9 +224,8 @@ class TextTable:
         labels = [f'{self.where(row)}: {what} {each}' for row, each in enumerate(numbers)]
         position: dict[int, int] = {}
         for row, each in enumerate(numbers):
-            if each in position:
+            if position.setdefault(each, row) != row:
                 raise FormatError(f'number {each} occurs twice', where=labels[row])
-            position[each] = row
         parents = np.full(len(numbers), -1, dtype=np.int64)
         for row, each in enumerate(self.whole(self.strict([parent])[:, 0], parent).tolist()):
             if each in position:

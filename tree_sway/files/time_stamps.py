@@ -96,9 +96,7 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
         return times_of([stamp.removesuffix(' sec') for stamp in stamps], factor)
     if finite(first) is None or _DIGITS.fullmatch(first):
         return dates(stamps)
-    numbers = [finite(stamp) for stamp in stamps]
-    values = np.array([np.nan if number is None else number for number in numbers])
-    values = unwrapped(values)
+    values = unwrapped(np.array([*map(finite, stamps)], dtype=np.float64))
     origin = float(values[np.isfinite(values)][0])
     size = abs(origin)  # what begins at 0 is no date
     days = _days(values, factor)

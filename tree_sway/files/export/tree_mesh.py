@@ -158,13 +158,13 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
 
 def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
     """Return clusters of the same area in parts that are spread about the shoot of each."""
+    many = LeafClusters(*(np.repeat(each, shoots, axis=0) for each in vars(leaves).values()))
     number = np.tile(np.arange(shoots), len(leaves.segment))
-    around = 2.4 * number + np.repeat(leaves.phase, shoots)
+    around = 2.4 * number + many.phase
     # The first part stays in the middle, where the shoot is.
     far = _SPREAD * np.sqrt(number / max(1, shoots - 1))
     along = _SPREAD * (2.0 * (number + 0.5) / shoots - 1.0)
     aside = np.column_stack([along, far * np.cos(around), far * np.sin(around)])
-    many = LeafClusters(*(np.repeat(each, shoots, axis=0) for each in vars(leaves).values()))
     turns = _turns(many)
     lean = Rotation.from_rotvec(aside[:, [0, 2, 1]] * [0.0, -1.0, 1.0])
     return replace(

@@ -29,15 +29,15 @@ def degrees_of(cells: Sequence[str]) -> Floats:
     A point is such as ``WNW``, ``West`` or ``Noroeste``. ``O`` is east where others have a W, as
     in German, and west where others have an E, as in French and Spanish.
     """
-    numbers = [finite(cell.removesuffix('°').removesuffix('º')) for cell in cells]
-    if all(number is not None for number in numbers):
-        return np.array(numbers, dtype=np.float64)
+    plain = [finite(cell.removesuffix('°').removesuffix('º')) for cell in cells]
+    numbers = np.array(plain, dtype=np.float64)
+    if np.isfinite(numbers).all():
+        return numbers
     points = [_point(cell) for cell in cells]
     letters = set(''.join(points))
     east_or_west = 'E' if 'W' in letters else 'W' if 'E' in letters else 'O'
-    named = (_DEGREES.get(point.replace('O', east_or_west), np.nan) for point in points)
-    pairs = zip(numbers, named, strict=True)
-    return np.array([point if number is None else number for number, point in pairs])
+    named = [_DEGREES.get(point.replace('O', east_or_west), np.nan) for point in points]
+    return np.where(np.isnan(numbers), named, numbers)
 
 
 def velocity_from(speed: Floats, degrees: Floats, turn: float = 0.0) -> Floats:

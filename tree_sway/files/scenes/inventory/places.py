@@ -69,7 +69,7 @@ def _degrees(columns: InventoryColumns, index: int) -> Floats:
     parts = [_DMS.fullmatch(text.strip()) for text in columns.texts(index)]
     if not any(parts):
         return columns.numbers(index)[0]
-    return np.array([math.nan if each is None else _decimal(each) for each in parts])
+    return np.array([each and _decimal(each) for each in parts], dtype=np.float64)
 
 
 def _decimal(parts: re.Match[str]) -> float:

@@ -83,14 +83,13 @@ def branch_segments(document: YamlDocument) -> Values:
 def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
     index: dict[str, int] = {}
     for number, branch in enumerate(branches):
-        if branch['name'] in index:
-            first = where[index[branch['name']]].rsplit(': ', 1)[0]
+        first = index.setdefault(branch['name'], number)
+        if first != number:
             raise FormatError(
-                f'a second branch of that name, the first is at {first}',
+                f'a second branch of that name, the first is at {where[first].rsplit(": ", 1)[0]}',
                 where=where[number],
                 cure='give each branch its own name',
             )
-        index[branch['name']] = number
     return index
 
 
