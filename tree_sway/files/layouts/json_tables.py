@@ -210,17 +210,10 @@ def _words(value: Any) -> list[Any]:
 
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
-    system = units.get('*')
-    records = []
-    empty: Cells = {}
-    for each in map(_by_name, node):
-        record = dict(flat(each))
-        if system:
-            record['units'] = system
-        records.append(record)
-        empty |= dict.fromkeys(record, '')
-    names = list(empty)
-    rows = [list((empty | record).values()) for record in records]
+    system = {'units': units['*']} if units.get('*') else {}
+    records = [dict(flat(each)) | system for each in map(_by_name, node)]
+    names = list(dict.fromkeys(name for record in records for name in record))
+    rows = [[record.get(name, '') for name in names] for record in records]
     beside = [unit_beside(records[0], name) or unit_for(name, units) for name in names]
     titles = [units.get(f'#{name}', name) for name in names]
     return widened(table_of_cells(titles, rows, source, units=beside))

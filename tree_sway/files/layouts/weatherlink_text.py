@@ -31,14 +31,13 @@ def _names(above: str, below: str) -> list[str]:
     if '\t' in below:
         pairs = zip_longest(above.split('\t'), below.split('\t'), fillvalue='')
         return [' '.join(' '.join(pair).split()) for pair in pairs]
+    first = list(_WORD.finditer(above))
     names = []
     for word in _WORD.finditer(below):
-        name = word[0]
-        for over in _WORD.finditer(above):
-            if over.start() < word.end() and over.end() > word.start():
-                name = f'{over[0]} {name}'
-                break
-        names.append(name)
+        over = (
+            each[0] for each in first if each.start() < word.end() and each.end() > word.start()
+        )
+        names.append(f'{next(over, "")} {word[0]}'.strip())
     return names
 
 

@@ -10,8 +10,6 @@ from pathlib import Path
 from typing import Any
 import warnings
 
-import numpy as np
-
 from tree_sway.core.scene import PlacedTree, Scene
 from tree_sway.core.species import Species, species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
@@ -213,14 +211,16 @@ def _scene(
 def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
     """Return the trees of one file as a scene: several at their places, the first at 0."""
     one = files[0]
-    trees = []
-    for each in files:
-        moved = np.subtract(each.origin, one.origin)
-        x, y, z = (moved + each.tree.start[0]).tolist()
-        placed = PlacedTree(
-            each.tree.name, each.tree, x, y, z, species=each.species, learned=each.learned
+    trees = [
+        PlacedTree(
+            each.tree.name,
+            each.tree,
+            *(np.subtract(each.origin, one.origin) + each.tree.start[0]).tolist(),
+            species=each.species,
+            learned=each.learned,
         )
-        trees.append(placed)
+        for each in files
+    ]
     if len(files) == 1:
         return Scene(trees, one.tree.name, one.source, one.notes, faults=one.faults)
     return Scene(trees, name, one.source, **said_of((each.tree.name, each) for each in files))

@@ -12,6 +12,7 @@ since 1900-01-01``). The extra ``netcdf`` reads them.
 from __future__ import annotations
 
 from array import array
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +51,7 @@ def read_netcdf_wind(
         If netCDF4 is not installed.
 
     """
-    point = [repr(degrees) for degrees in _point(at) or ()]
+    point = map(repr, _point(at))
     cure = 'download it again'
     found = bounded_arrays(_winds_of_netcdf, path, *point, kind='a netCDF file', cure=cure)
     rows = WindRows(str(path), row_name='sample')
@@ -72,14 +73,14 @@ def _winds_of_netcdf(path: str, *at: str) -> Arrays:
     """Yield velocity, seconds after the first, gust where there is one, epoch and notes."""
     from netCDF4 import Dataset
 
-    point = (float(at[0]), float(at[1])) if at else None
     with Dataset(path) as data:
-        yield from _read(data, point)
+        yield from _read(data, at)
 
 
-def _point(at: tuple[str, ...] | None) -> tuple[float, float] | None:
+def _point(at: tuple[str, ...] | None) -> tuple[float, ...]:
+    """Return a latitude and a longitude, or nothing."""
     if at is None:
-        return None
+        return ()
     try:
         latitude, longitude = (float(part) for part in at)
     except (TypeError, ValueError):
@@ -89,7 +90,7 @@ def _point(at: tuple[str, ...] | None) -> tuple[float, float] | None:
     return latitude, longitude
 
 
-def _read(data: Any, point: tuple[float, float] | None) -> Arrays:
+def _read(data: Any, point: Sequence[str]) -> Arrays:
     found = {each: _find(data, each) for each in ('time', *_COMPONENTS, *_POLAR, 'gust')}
     clock = found['time']
     is_polar = None in [found[each] for each in _COMPONENTS]
@@ -123,16 +124,14 @@ def _find(data: Any, quantity: str) -> Any:
     return data.variables[min(ranks)[2]] if ranks else None
 
 
-def _place(
-    data: Any, variable: Any, point: tuple[float, float] | None
-) -> tuple[list[str], dict[str, int]]:
+def _place(data: Any, variable: Any, point: Sequence[str]) -> tuple[list[str], dict[str, int]]:
     """Index of each dimension at a point, and a note of where that is."""
     chosen = dict[str, int]()
     said = list[str]()
     for axis, quantity in enumerate(('latitude', 'longitude')):
         for name in [d for d in variable.dimensions if is_named(d, quantity)][:1]:
             degrees = np.asarray(data.variables[name][:], dtype=np.float64)
-            wanted = degrees[0] if point is None else point[axis]
+            wanted = float(point[axis]) if point else degrees[0]
             apart = np.abs((degrees - wanted + 180.0) % 360.0 - 180.0)
             chosen[name] = int(np.argmin(apart))
             said.append(f'{quantity} {degrees[chosen[name]]:g}')
