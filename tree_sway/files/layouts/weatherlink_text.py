@@ -31,12 +31,10 @@ def _names(above: str, below: str) -> list[str]:
     if '\t' in below:
         pairs = zip_longest(above.split('\t'), below.split('\t'), fillvalue='')
         return [' '.join(' '.join(pair).split()) for pair in pairs]
-    first = list(_WORD.finditer(above))
     names = []
     for word in _WORD.finditer(below):
-        over = (
-            each[0] for each in first if each.start() < word.end() and each.end() > word.start()
-        )
+        begin, end = word.span()
+        over = (o[0] for o in _WORD.finditer(above) if o.start() < end and o.end() > begin)
         names.append(f'{next(over, "")} {word[0]}'.strip())
     return names
 

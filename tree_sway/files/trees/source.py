@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 import warnings
 
+import numpy as np
+
 from tree_sway.core.scene import PlacedTree, Scene
 from tree_sway.core.species import Species, species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
