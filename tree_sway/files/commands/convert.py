@@ -90,8 +90,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
     if arguments.leaves is None:
         arguments.leaves = 'on' if suffix in _DRAWN else 'auto'
-    moments = None if arguments.at is None else moments_of(arguments.at)
-    count = len(moments or (0.0,))
+    moments = [] if arguments.at is None else moments_of(arguments.at)
+    count = max(1, len(moments))
     paths = numbered_paths(output, count, may_overwrite=suffix != '.obj' or arguments.force)
     scene = opened_scene(arguments)
     for note in scene.notes:
@@ -125,13 +125,13 @@ _FORMATS = (*SUFFIXES, MODEL_SUFFIX, NATIVE_SUFFIX, '.html', *_USD, *_HINGED, '.
 
 
 def _write_moments(
-    scene: Scene, arguments: argparse.Namespace, moments: list[float] | None, paths: list[Path]
+    scene: Scene, arguments: argparse.Namespace, moments: list[float], paths: list[Path]
 ) -> None:
     """Write the triangles of a scene at rest, or of each moment in wind to its file."""
     files = ObjScene(scene.tree, drawn_leaves(scene, arguments))
     name = scene.name
     axes = 'metres, x east, y north, z up'
-    if moments is None:
+    if not moments:
         write_text_whole(paths[0], files.text(scene.tree.rest_poses, f'{name} at rest; {axes}'))
         return
     wind = opened_wind(arguments)

@@ -215,8 +215,10 @@ def _swung(
     """Poses with one coordinate at plus and at minus a share of its unit."""
     coordinates = np.zeros(basis.n_coordinates)
     coordinates[k] = _SWING * size
-    rotations = basis.rotations(coordinates), basis.rotations(-coordinates)
-    there, back = (simulator.place_rotations(each).copy() for each in rotations)
+    there, back = (
+        simulator.place_rotations(basis.rotations(each)).copy()
+        for each in (coordinates, -coordinates)
+    )
     return there, back
 
 

@@ -43,8 +43,10 @@ def winds_of_directions(
     velocity = velocity_from(speeds, degrees, yaw)
     for row in np.flatnonzero(np.isnan(velocity[:, 0])).tolist():
         if speeds[row] >= 0.0:
-            name = '' if isinstance(direction, float) else table.columns[direction.index]
-            why = _why_no_direction(name, texts[row], degrees[row])
+            why = f'direction is {degrees[row]:g} degrees'
+            if isinstance(direction, Column) and np.isnan(degrees[row]):
+                why = f"{table.columns[direction.index]} is '{texts[row][:40]}', "
+                why += 'neither degrees nor a point of the compass'
         elif speeds[row] < 0.0:
             why = f'speed is {speeds[row]:g}'
         elif finite(cells[row]) is not None:
@@ -61,9 +63,3 @@ def _degrees(table: TextTable, direction: Column | float) -> tuple[Floats, list[
     texts = table.cells(direction.index, table.rows)
     to_degrees = direction.factor / (unit_factor('angle', 'deg') or 1.0)
     return degrees_of(texts) * to_degrees, texts
-
-
-def _why_no_direction(name: str, text: str, degrees: float) -> str:
-    if np.isfinite(degrees):
-        return f'direction is {degrees:g} degrees'
-    return f"{name} is '{text[:40]}', neither degrees nor a point of the compass"

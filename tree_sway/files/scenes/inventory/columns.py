@@ -69,8 +69,8 @@ class InventoryColumns:
 
     def numbered(self, quantity: str) -> list[int]:
         """Places of columns of the stems of a tree, as ``DBH 1 (cm)`` and ``DBH 2 (cm)``."""
-        names = [_NUMBERED.sub('', name) for name in self.table.columns]
-        return [i for i, name in enumerate(names) if is_named(name, quantity)]
+        names = enumerate(self.table.columns)
+        return [i for i, name in names if is_named(_NUMBERED.sub('', name), quantity)]
 
     def index_of(self, quantity: str) -> int | None:
         """Place of the first column of a quantity; None without one."""
