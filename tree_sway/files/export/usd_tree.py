@@ -70,8 +70,8 @@ def SkelRoot "{name}" (prepend apiSchemas = ["SkelBindingAPI"])
 def Skeleton "Skeleton" (prepend apiSchemas = ["SkelBindingAPI", "DynamicWindSkeletonAPI"])
 {{
 uniform token[] joints = {joints}
-uniform matrix4d[] bindTransforms = {_matrices(rest)}
-uniform matrix4d[] restTransforms = {_matrices(poses_on_parents(tree, rest))}
+uniform matrix4d[] bindTransforms = {_tuples(matrices_of(rest), '%.7g')}
+uniform matrix4d[] restTransforms = {_tuples(matrices_of(poses_on_parents(tree, rest)), '%.7g')}
 rel skel:animationSource = </{name}/Sway>
 {_wind_attributes(simulator)}
 }}
@@ -203,15 +203,11 @@ float2 outputs:result
 }}"""
 
 
-def _matrices(poses: Floats) -> str:
-    row = '(%.7g, %.7g, %.7g, %.7g)'
-    form = f'({row}, {row}, {row}, {row})'
-    numbers = tuple(matrices_of(poses).ravel().tolist())
-    return f'[{", ".join([form] * len(poses))}]' % numbers
-
-
 def _tuples(values: Floats, number: str = '%.5g') -> str:
-    form = f'({", ".join([number] * values.shape[1])})'
+    """Write an array of tuples of numbers, or of tuples of such tuples."""
+    form = number
+    for size in values.shape[:0:-1]:
+        form = f'({", ".join([form] * size)})'
     return f'[{", ".join([form] * len(values))}]' % tuple(values.ravel().tolist())
 
 
