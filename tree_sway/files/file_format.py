@@ -83,12 +83,14 @@ def format_of(
     kind: str,
     *,
     folder: str = '',
+    head: str | None = None,
 ) -> FileFormat:
     """
     Return the format of a file: the given one, else by its content, then by its suffix.
 
     The first that recognises the content is used; ``kind`` (the contents of the files) is for the
-    errors, ``folder`` the name of the format that is a folder, if there is one.
+    errors, ``folder`` the name of the format that is a folder, if there is one, ``head`` the
+    beginning of the file where it was read before.
 
     Raises
     ------
@@ -107,7 +109,7 @@ def format_of(
             if known.name == wanted:
                 return known
         raise ParameterError(f"unknown {kind} format '{wanted}'", cure=f'use {names}')
-    head = read_head(path)
+    head = read_head(path) if head is None else head
     what, cure = foreign_file(path, head) if kind == 'tree' and head else ('', '')
     if what:
         raise FormatError(f'{what}, not a {kind}', cure=cure)

@@ -46,6 +46,7 @@ def read_stand_table(
     *,
     seed: int = 0,
     exact: bool = False,
+    head: str | None = None,
     **fields: Any,
 ) -> Scene:
     """
@@ -53,7 +54,7 @@ def read_stand_table(
 
     The seed is for grown trees and for yaws; further arguments are those of `Scene`. An unknown
     species is replaced as by `species_like`. With ``exact`` each tree is grown by itself, to its
-    own height and diameter.
+    own height and diameter. ``head`` is the beginning of the file where it was read before.
 
     Raises
     ------
@@ -64,7 +65,7 @@ def read_stand_table(
 
     """
     given = dict(kinds or {})
-    table = inventory_table(path, read_head(path))
+    table = inventory_table(path, read_head(path) if head is None else head)
     inventory = inventory_of(table, given)
     notes = list(inventory.notes)
     wood = inventory.wood

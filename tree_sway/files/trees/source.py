@@ -84,9 +84,10 @@ def open_tree(
     path = path_of(text)
     if not path.exists():
         raise unknown_tree(text)
-    if path.is_file():
-        _refuse_several_trees(path)
-    found = read_tree(path, wood=wood, in_leaf=in_leaf, **options).checked()
+    head = read_head(path) if path.is_file() else None
+    if head is not None:
+        _refuse_several_trees(path, head)
+    found = read_tree(path, head=head, wood=wood, in_leaf=in_leaf, **options).checked()
     if warn:
         _warn(found.faults)
     return found
@@ -110,10 +111,9 @@ def unknown_tree(name: str) -> FormatError:
     return FormatError(f"no tree '{name}'", cure=cure)
 
 
-def _refuse_several_trees(path: Path) -> None:
+def _refuse_several_trees(path: Path, head: str) -> None:
     """Raise a `FormatError` for a forest or a stand, with how to get one of its trees."""
     where = str(path)
-    head = read_head(path)
     if begins_with_key(path, head, 'trees'):
         with expected(path, 'scene'):
             raise FormatError(
@@ -187,15 +187,15 @@ def _scene(
     if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
         read = partial(read_scene_yaml, path, opened, exact=exact)
     elif is_stand_table(head, path):
-        read = partial(read_stand_table, path, seed=seed, exact=exact)
+        read = partial(read_stand_table, path, seed=seed, exact=exact, head=head)
     if read is None:
         try:
-            files = [each.checked() for each in read_trees(path, **asked, **options)]
+            files = [each.checked() for each in read_trees(path, head=head, **asked, **options)]
         except UnknownFormatError:
             lacking = lacking_columns(head)
             if lacking is None or len(lacking) == len(INVENTORY):
                 raise
-            return read_stand_table(path, seed=seed, exact=exact)
+            return read_stand_table(path, seed=seed, exact=exact, head=head)
         return scene_of_files(files, path.stem)
     if options:
         raise ParameterError(
@@ -213,16 +213,12 @@ def _scene(
 def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
     """Return the trees of one file as a scene: several at their places, the first at 0."""
     one = files[0]
-    trees = [
-        PlacedTree(
-            each.tree.name,
-            each.tree,
-            *(np.subtract(each.origin, one.origin) + each.tree.start[0]).tolist(),
-            species=each.species,
-            learned=each.learned,
-        )
-        for each in files
-    ]
+    trees = []
+    for each in files:
+        tree = each.tree
+        x, y, z = (np.subtract(each.origin, one.origin) + tree.start[0]).tolist()
+        placed = PlacedTree(tree.name, tree, x, y, z, species=each.species, learned=each.learned)
+        trees.append(placed)
     if len(files) == 1:
         return Scene(trees, one.tree.name, one.source, one.notes, faults=one.faults)
     return Scene(trees, name, one.source, **said_of((each.tree.name, each) for each in files))

@@ -33,6 +33,7 @@ def read_trees(
     /,
     format: str | None = None,  # noqa: A002
     *,
+    head: str | None = None,
     wood: Callable[[Species], Species] = same,
     in_leaf: bool | None = None,
     **options: Any,
@@ -40,9 +41,9 @@ def read_trees(
     """
     Read every tree of a file, of a given format or found from content and suffix.
 
-    Options are those of `TreeOptions`. ``wood`` returns the species to use in place of that of the
-    file; ``in_leaf`` is the season, by the species if None, in which a limb that cannot carry
-    itself is thickened, where that is so.
+    Options are those of `TreeOptions`. ``head`` is the beginning of the file if it is known;
+    ``wood`` returns the species to use in place of that of the file; ``in_leaf`` is the season, by
+    the species if None, in which a limb that cannot carry itself is thickened, where that is so.
 
     Raises
     ------
@@ -55,7 +56,7 @@ def read_trees(
 
     """
     with expected(path, 'tree'):
-        chosen = format_of(path, format, TREE_FORMATS, 'tree')
+        chosen = format_of(path, format, TREE_FORMATS, 'tree', head=head)
         chosen.refuse_others(options, [each.name for each in fields(TreeOptions)])
         wanted = TreeOptions(**{**chosen.defaults, **options})
         content = chosen.read(path)
