@@ -13,7 +13,7 @@ def table_of_cells(
     columns: Sequence[str],
     rows: Iterable[Sequence[str]],
     source: str,
-    numbers: Sequence[int] | None = None,
+    numbers: Sequence[int] = (),
     units: Sequence[str] = (),
     row_name: str = 'line',
 ) -> TextTable:
@@ -23,7 +23,7 @@ def table_of_cells(
     ``numbers`` count the rows in the file, where one is called ``row_name``.
     """
     kept = [*map(tuple, rows)]
-    lines = range(1, len(kept) + 1) if numbers is None else numbers
+    lines = numbers or range(1, len(kept) + 1)
     return TextTable(
         tuple(columns), lines, kept, tuple, source, units=tuple(units), row_name=row_name
     )

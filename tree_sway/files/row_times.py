@@ -43,14 +43,15 @@ def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
     of_day = [i for i in columns if texts[i] and all(map(TIME_OF_DAY.fullmatch, texts[i]))]
     clocks = table.find_all('time')
     clocks.sort(key=lambda each: (not _run_on(texts[each]), each in of_day))
+    dated = [each for each in columns if _are_dates(texts[each])]
     if not clocks or not _run_on(texts[clocks[0]]):
-        clocks = [each for each in columns if _are_dates(texts[each])][:1] or clocks
+        clocks = dated[:1] or clocks
     if not clocks:
         return None
-    days = [each for each in columns if _are_days(texts[each])]
+    days = [each for each in dated if not any(':' in cell for cell in texts[each])]
     if days and of_day and clocks[0] in (*days, *of_day):
         return [days[0], of_day[0]], '{0} {1}', 1.0
-    if _are_dates(texts[clocks[0]]):  # what is in brackets is no unit then
+    if clocks[0] in dated:  # what is in brackets is no unit then
         return [clocks[0]], '', 1.0
     unit = table.unit_of(clocks[0], 'time') or maker_of(table).get('time')
     return [clocks[0]], '', table.known_factor('time', unit) if unit else 1.0
@@ -77,11 +78,6 @@ def _are_dates(cells: Sequence[str]) -> bool:
     """Whether cells are dates; none is a number."""
     has_numbers = any(finite(cell) is not None for cell in cells)
     return not has_numbers and dates(cells).epoch != 0.0
-
-
-def _are_days(cells: Sequence[str]) -> bool:
-    """Whether cells are dates without a time of day."""
-    return _are_dates(cells) and not any(':' in cell for cell in cells)
 
 
 def _run_on(cells: Sequence[str]) -> bool:

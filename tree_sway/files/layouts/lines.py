@@ -68,9 +68,9 @@ def _read(lines: list[str], source: str, known: dict[str, Any]) -> TextTable:
         unit = unit or cells.get('unit', '')
         if cells.get('unit', '') != unit:
             cells = {}
-        cells = dict.fromkeys(names, '') | cells
-        row = ['' if missing.fullmatch(cells[name]) else cells[name] for name in names]
-        rows[number] = ['', *(cell.replace(',', '.') for cell in row)]
+        row = (cells.get(name, '') for name in names)
+        plain = ('' if missing.fullmatch(cell) else cell.replace(',', '.') for cell in row)
+        rows[number] = ['', *plain]
     units = known['units']
     if unit:
         units = units | dict.fromkeys(_SPEEDS, units.get(unit, unit))

@@ -66,8 +66,9 @@ def species_of_rows(
         if other := _AMBIGUOUS.get(name.lower().replace('-', '')):
             note = f"'{name}' is taken as {known[name].title}; in {other['where']} it is "
             note += f'{other["meaning"]}: write that if it is'
-        notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})' if note else '')
-    columns.note(*[note for note in notes if note][:_MOST_NOTES])
+        if note:
+            notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})')
+    columns.note(*notes[:_MOST_NOTES])
     return names, known
 
 

@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,8 +17,7 @@ from tree_sway.files.yaml_document import YamlDocument
 Values = dict[str, Any]
 
 
-@dataclass(slots=True)
-class _Placed:
+class _Placed(NamedTuple):
     """Geometry of a branch in the tree's frame, and its first row in the table."""
 
     start: Floats
@@ -54,13 +52,12 @@ def branch_segments(document: YamlDocument) -> Values:
         branch = branches[number]
         its_parent = placed.get(parents[number])
         start, end, diameter = _own_points(branch, where[number])
-        sits_on = -1
-        origin = np.zeros(3)
+        base, origin = -1, np.zeros(3)
         if its_parent is not None:
             sits_on, origin = _attachment(branch, its_parent, start[0], where[number])
+            base = its_parent.first + sits_on
         first = len(parent)
         placed[number] = _Placed(start + origin, end + origin, diameter, first)
-        base = its_parent.first + sits_on if its_parent is not None else -1
         parent += [base, *range(first, first + len(start) - 1)]
         owner += [number] * len(start)
         # A segment between two nodes is named by the line of the second.
