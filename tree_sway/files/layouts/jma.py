@@ -46,12 +46,11 @@ def _read(lines: list[str], source: str) -> TextTable:
     titles = [' '.join(filter(None, each)) for each in zip_longest(*head[_ELEMENTS:])]
     mean = next((each for each in _MEANS if each in titles), '')
     wanted = (titles[0], mean, f'{mean} {_DIRECTION}', _GUST, f'{mean} {_QUALITY}')
-    places = [titles.index(each) if each in titles else -1 for each in wanted]
     rows = {}
     for number, line in enumerate(lines, start=1):
         if _ROW.match(line):
-            cells = dict(enumerate(map(str.strip, line.split(','))))
-            time, speed, *others, quality = (cells.get(place, '') for place in places)
+            cells = dict(zip(titles, map(str.strip, line.split(',')), strict=False))
+            time, speed, *others, quality = (cells.get(title, '') for title in wanted)
             rows[number] = [time, '' if quality in _DOUBTFUL else speed, *others]
     return table_of_cells(_NAMES, rows.values(), source, [*rows], _UNITS)
 

@@ -147,7 +147,7 @@ class TreeHistory:
         for each in sensor_reports(twin):
             values[f'{each.name}: {_REFUSED}'] = each.refused
             values[f'{each.name}: {_CHANGE}'] = getattr(each.change, 'ratio', None)
-        date = datetime.now(timezone.utc).isoformat(timespec='seconds').replace('+00:00', 'Z')
+        date = datetime.now(timezone.utc).strftime('%Y-%m-%dT%H:%M:%SZ')
         columns = _columns(self._names)
         known = [values[column] for column in columns[1:]]
         line = _line_of([date, *('' if each is None else f'{each:.6g}' for each in known)])
