@@ -13,7 +13,6 @@ the node of the tree has the rotation, and everything inside it is in our frame.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -226,7 +225,7 @@ def _change(part: TreePart, step: tuple[Floats, Floats]) -> Floats:
     """Return the motion of vertices per unit of a coordinate, by a central difference."""
     mesh = part.mesh
     if part.is_wood:  # a ring moves with its centre, so that rounding keeps its shape
-        mesh = replace(mesh, points=mesh.points * [1.0, 0.0, 0.0])
+        mesh = mesh._replace(points=mesh.points * [1.0, 0.0, 0.0])
     return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
 
 

@@ -13,7 +13,6 @@ and the factor makes up for both.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 import math
 import re
 from typing import NamedTuple
@@ -43,8 +42,7 @@ _N_POINTS = 4
 """Points of integration by Gauss and Legendre on each half of a segment."""
 
 
-@dataclass(frozen=True)
-class HingedTree:
+class HingedTree(NamedTuple):
     """
     Bodies of the segments, each in the frame of its segment: x along it.
 

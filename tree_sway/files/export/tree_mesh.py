@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -31,8 +32,7 @@ _FLAT, _SKYWARD = 0.5, 0.4
 """Part of a card's own normal in that by which it is lit, and of the sky, beside the crown's."""
 
 
-@dataclass(frozen=True)
-class TreeMesh:
+class TreeMesh(NamedTuple):
     """
     Triangles whose vertices move with one segment each.
 
@@ -97,8 +97,7 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     around_it = np.column_stack([i, j, j + SIDES, i, j + SIDES, i + SIDES]).reshape(-1, 3)
     far_end = np.column_stack([0 * fan, fan, fan + 1]) + SIDES
     of_cone = np.vstack([around_it, far_end[:, [0, 2, 1]] - SIDES, far_end])
-    first = 2 * SIDES * np.arange(n)
-    triangles = first[:, None, None] + of_cone
+    triangles = 2 * SIDES * np.arange(n)[:, None, None] + of_cone
     return TreeMesh(
         rings.reshape(-1, 3),
         normals.reshape(-1, 3),
@@ -189,9 +188,7 @@ def _unit(vectors: Floats) -> Floats:
 def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
     """Mesh of cards from their corners and the normals there, (m, 4, 3)."""
     n = len(points)
-    two = np.array([[0, 1, 2], [0, 2, 3]])
-    first = 4 * np.arange(n)
-    triangles = first[:, None, None] + two
+    triangles = 4 * np.arange(n)[:, None, None] + [[0, 1, 2], [0, 2, 3]]
     of_picture = _CORNERS + np.array([0.0, 0.5])
     return TreeMesh(
         points.reshape(-1, 3),
