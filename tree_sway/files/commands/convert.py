@@ -108,9 +108,8 @@ def run(arguments: argparse.Namespace) -> int:
         one = scene.trees[0]
         write_tree(output, TreeFile(scene.tree, one.species, scene.source, learned=one.learned))
     else:
-        species = scene.species if scene.is_one_tree else None
         leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
-        write_tree(output, scene.tree, species, leaves)
+        write_tree(output, scene.tree, leaves=leaves)
     written = f'{paths[0]} to {paths[-1].name}, {count} moments' if count > 1 else paths[0]
     print(what_was_written(str(written), scene.tree))
     return 0
