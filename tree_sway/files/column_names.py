@@ -176,7 +176,7 @@ def rank_of(column: str, quantity: str) -> int | None:
 
 
 def is_named(column: str, *quantities: str) -> bool:
-    """Whether a column's name is one of any of some quantities, as by `rank_of`."""
+    """Whether a column's name is one of those of some quantities, as by `rank_of`."""
     return any(rank_of(column, each) is not None for each in quantities)
 
 

@@ -133,7 +133,7 @@ class TextTable:
             if (rank := rank_of(column, quantity)) is not None
         ]
         found = [index for _, _, index in sorted(ranks)]
-        first = self.rows[: _LOOKED_AT * (len(found) > 1)]
+        first = self.rows[:_LOOKED_AT] if len(found) > 1 else ()
         return sorted(found, key=lambda each: not any(self.cells(each, first)))
 
     def factor_of(self, index: int, quantity: str) -> float:

@@ -210,12 +210,12 @@ def _words(value: Any) -> list[Any]:
 
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
-    system = {'units': units['*']} if units.get('*') else {}
+    system = {'units': text_of(units['*'])} if units.get('*') else {}
     records = [dict(flat(each)) | system for each in map(_by_name, node)]
     names = list(dict.fromkeys(name for record in records for name in record))
     rows = [[record.get(name, '') for name in names] for record in records]
     beside = [unit_beside(records[0], name) or unit_for(name, units) for name in names]
-    titles = [units.get(f'#{name}', name) for name in names]
+    titles = [text_of(units.get(f'#{name}', name)) for name in names]
     return widened(table_of_cells(titles, rows, source, units=beside))
 
 

@@ -211,10 +211,13 @@ def fill_heights(
 
 def _unread_height(columns: InventoryColumns, rows: list[int]) -> str:
     """Tell the first height with digits that is no number, such as a date; empty without one."""
-    for index, numbers, _ in filter(None, [_read_heights(columns)]):
-        for row in rows:
-            if np.isnan(numbers[row]) and any(map(str.isdigit, columns.cell(index, row))):
-                return f' that can be read; {columns.line(row)}: {columns.told(index, row)}'
+    heights = _read_heights(columns)
+    if heights is None:
+        return ''
+    index, numbers, _ = heights
+    for row in rows:
+        if np.isnan(numbers[row]) and any(map(str.isdigit, columns.cell(index, row))):
+            return f' that can be read; {columns.line(row)}: {columns.told(index, row)}'
     return ''
 
 
