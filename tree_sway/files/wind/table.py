@@ -131,7 +131,7 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
         known |= {*of_one.values()}
         for index, height in of_one.items():
             names[index] = names[index] if height == lowest[quantity] else ''
-    first = lowest.get('wind_speed') or next(iter(lowest.values()))
+    first = lowest.get('wind_speed', next(iter(lowest.values())))
     others = sorted(known - {first})
     more = f'; there is one at {", ".join(f"{each:g}" for each in others)} m' if others else ''
     note = '' if known == {_USUAL} else f'the wind at {first:g} m{more}'
