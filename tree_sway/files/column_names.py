@@ -258,9 +258,9 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
 def _glued_unit(name: str, known: str, kind: str) -> str:
     """Return the unit of a kind that follows a known name without a sign: ``windspeedmph``."""
     whole = folded(name)
-    end = whole[len(known) :]
+    end = whole.removeprefix(known)
     last = re.split(r'[\s_.]+', name)[-1]
-    if not end or not whole.startswith(known) or len(end) > len(folded(last)):
+    if end in ('', whole) or len(end) > len(folded(last)):
         return ''  # stem_diam_m is in m, and not a 'stem dia' in mm
     if whole not in _WITH_UNIT and (len(known) < _SHORTEST_GLUED or whole in _ALL_NAMES):
         return ''  # stem_diameter is a name of its own, and not a 'stem dia' in meters

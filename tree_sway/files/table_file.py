@@ -201,8 +201,8 @@ class TextTable:
         size = len(self.columns)
         for index, name in enumerate(self.columns):
             if folded(name_and_unit(name, '')[0]) in SENDERS[:-1]:
-                rows = [row for row in map(self.split, self.texts) if len(row) == size]
-                found = sorted({row[index] for row in rows} - {'', name})
+                rows = map(self.split, self.texts)
+                found = sorted({row[index] for row in rows if len(row) == size} - {'', name})
                 if len(found) > 1:
                     raise self.error(
                         f'rows of {len(found)} instruments: {", ".join(found[:4])}',

@@ -139,17 +139,18 @@ def _days(values: Floats, factor: float) -> Times | None:
     kind = next((each for each in _DAYS if each[0] <= least and most < each[1]), None)
     if kind is None:
         return None
+    _, _, of_1970, title = kind
     step = float(np.median(np.abs(np.diff(known)))) if len(known) > 1 else 0.0
     is_round = abs(step * 1e3 - round(step * 1e3)) < 1e-3 and step >= 1e-3
     if factor == 1.0 and (is_round or not 0.0 < step < _MANY_HOURS):
-        return Times(values, None, f'times are taken as seconds, not as {kind[3]}')
+        return Times(values, None, f'times are taken as seconds, not as {title}')
     first = float(known[0])
     seconds = np.round((values - first) * 86400.0, 3)
-    note = f'times are taken as {kind[3]}, from {_day(first - kind[2])}'
+    note = f'times are taken as {title}, from {_day(first - of_1970)}'
     if kind in _SERIALS:
         others = [each for each in _SERIALS if each != kind]
         note += ''.join(f'; as {each[3]} from {_day(first - each[2])}' for each in others)
-    return Times(seconds, (first - kind[2]) * 86400.0, note)
+    return Times(seconds, (first - of_1970) * 86400.0, note)
 
 
 def _day(days: float) -> str:
