@@ -62,8 +62,7 @@ def counted_times(table: TextTable) -> Times | None:
     told = _RATE.search('\n'.join(table.above))
     if told is None:
         return None
-    numbers = [(each or '0').replace(',', '.') for each in told.groups()]
-    rate, step = map(float, numbers)
+    rate, step = (float((each or '0').replace(',', '.')) for each in told.groups())
     hertz = 1.0 / step if step else rate
     if hertz <= 0.0:
         return None

@@ -48,8 +48,7 @@ def header_line(lines: Sequence[str]) -> int | None:
     plain: dict[int, int] = {}
     hashed: dict[int, int] = {}
     for number, line in enumerate(lines[:_HEAD]):
-        cells = _cells(line)
-        filled = [cell for cell in cells if cell]
+        filled = list(filter(None, _cells(line)))
         n_numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
         is_comment = _is_comment(line)
         if is_comment:
