@@ -31,6 +31,17 @@ def refuse_unwritable(path: str | Path) -> None:
 
 
 @contextmanager
+def refusing(path: str | Path, cure: str = _CURE) -> Iterator[None]:
+    """Raise a `FormatError` in place of an `OSError` of writing a file."""
+    try:
+        yield
+    except OSError as error:
+        raise FormatError(
+            f'cannot be written: {error.strerror or error}', where=str(path), cure=cure
+        ) from error
+
+
+@contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
     """
     Yield a path to write to, which replaces the file when the block ends without an error.
@@ -40,8 +51,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     `OSError` ended the block.
     """
     target = path_of(path).resolve()
-    partial: Path | None = None
-    try:
+    with refusing(path):
         if target.exists() and not target.is_file():
             if target.is_dir():
                 raise FormatError('a folder', where=str(path), cure='name a file to write')
@@ -49,19 +59,13 @@ def whole_file(path: str | Path) -> Iterator[Path]:
             return
         # The name of a temporary file is short, so that a long name of the target still fits.
         partial = target.with_name(f'.part-{uuid4().hex[:16]}{target.suffix[:16]}')
-        partial.touch(exist_ok=False)
-        yield partial
-        if target.exists():
-            partial.chmod(target.stat().st_mode & 0o777)
-        partial.replace(target)
-    except OSError as error:
-        raise FormatError(
-            f'cannot be written: {error.strerror or error}',
-            where=str(path),
-            cure=_CURE,
-        ) from error
-    finally:
-        if partial is not None:
+        try:
+            partial.touch(exist_ok=False)
+            yield partial
+            if target.exists():
+                partial.chmod(target.stat().st_mode & 0o777)
+            partial.replace(target)
+        finally:
             partial.unlink(missing_ok=True)
 
 

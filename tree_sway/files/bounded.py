@@ -61,10 +61,10 @@ def bounded_arrays(
         ended = subprocess.run(
             [*command, *words], capture_output=True, env=environment, timeout=2 * SECONDS
         )
+        code = ended.returncode
         reason = ended.stderr.decode('utf-8', 'replace').strip().split('\n')[-1]
     except subprocess.TimeoutExpired:
-        ended = None
-        reason = ''
+        code, reason = -1, ''
     if reason.startswith('no module '):
         missing = reason.rsplit(' ', 1)[1]
         raise MissingDependencyError(
@@ -74,10 +74,9 @@ def bounded_arrays(
         what, where, remedy = json.loads(reason.removeprefix(_IS_TOLD))
         place = where.replace(str(path.absolute()), str(path))
         raise FormatError(what, where=place, cure=remedy)
-    if ended is None or ended.returncode:
-        is_large = ended is None or ended.returncode < 0 or 'MemoryError' in reason
+    if code:
         budget = f'it takes more than {MEMORY >> 20} MiB of memory or {SECONDS} s, or is damaged'
-        why = budget if is_large else reason
+        why = budget if code < 0 or 'MemoryError' in reason else reason
         raise FormatError(f'not {kind} that can be read: {why}', where=str(path), cure=cure)
     with np.load(io.BytesIO(ended.stdout)) as arrays:
         return {name: arrays[name] for name in arrays.files}

@@ -42,9 +42,10 @@ COMPASS: dict[str, str] = _KNOWN['compass']
 TIME_PARTS: dict[str, str] = _KNOWN['time_parts']
 """Columns that make a time together, and how."""
 
-_UMLAUTS = str.maketrans(
-    {'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'ç': 'ch', 'º': '°'}
-)
+HEADER: list[str] = _KNOWN['header']
+"""Quantities whose names tell the header of a table."""
+
+_UMLAUTS = str.maketrans(_KNOWN['umlauts'])
 _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
@@ -174,6 +175,11 @@ def rank_of(column: str, quantity: str) -> int | None:
     return len(_NAMES[quantity]) if is_like else None
 
 
+def is_named(column: str, *quantities: str) -> bool:
+    """Whether a column's name is one of those of some quantities, as by `rank_of`."""
+    return any(rank_of(column, each) is not None for each in quantities)
+
+
 def _roles(name: str) -> str:
     """Return a folded name with a capital letter in place of each word that is known."""
     words = _WORD.sub(lambda word: _ROLES[word[0]], _SPAN.sub('', name))
@@ -252,9 +258,9 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
 def _glued_unit(name: str, known: str, kind: str) -> str:
     """Return the unit of a kind that follows a known name without a sign: ``windspeedmph``."""
     whole = folded(name)
-    end = whole[len(known) :]
+    end = whole.removeprefix(known)
     last = re.split(r'[\s_.]+', name)[-1]
-    if not end or not whole.startswith(known) or len(end) > len(folded(last)):
+    if end in ('', whole) or len(end) > len(folded(last)):
         return ''  # stem_diam_m is in m, and not a 'stem dia' in mm
     if whole not in _WITH_UNIT and (len(known) < _SHORTEST_GLUED or whole in _ALL_NAMES):
         return ''  # stem_diameter is a name of its own, and not a 'stem dia' in meters

@@ -11,7 +11,7 @@ import re
 from typing import Any
 
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import folded, is_named
 from tree_sway.files.foreign_file import foreign_file
 from tree_sway.files.text_file import read_head
 
@@ -66,14 +66,12 @@ def contains(pattern: str) -> Callable[[str], bool]:
 
 
 def has_columns(*names: str) -> Callable[[str], bool]:
-    """Recognise a table by the columns in its first line that is not a comment."""
+    """Recognise a table by the columns in its first line that is not a comment, folded."""
+    wanted = set(map(folded, names))
 
     def recognise(head: str) -> bool:
-        for line in head.splitlines():
-            if line.strip() and not line.startswith('#'):
-                cells = {cell.strip(' "').lower() for cell in re.split('[,;\t]', line)}
-                return all(name.lower() in cells for name in names)
-        return False
+        lines = (line for line in head.splitlines() if line.strip() and not line.startswith('#'))
+        return wanted <= set(map(folded, re.split('[,;\t]', next(lines, ''))))
 
     return recognise
 
@@ -157,7 +155,7 @@ def _unknown(path: Path, kind: str, names: str) -> FormatError:
         return FormatError(f'{what}, not a {kind}', cure=cure)
     if head:
         cells = re.split('[,;\t]', head.partition('\n')[0])
-        names_trees = any(rank_of(cell, each) is not None for cell in cells for each in _OF_TREES)
+        names_trees = any(is_named(cell, *_OF_TREES) for cell in cells)
         need = (
             'an inventory has columns for the place, the species, and the height or dbh; a tree '
             'as a table has segment, parent, x0, y0, z0, x1, y1, z1, d0, d1 [m]'

@@ -10,7 +10,7 @@ import re
 from typing import Any
 
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import is_named
 
 DEEPEST = 12
 _DECIMAL = re.compile(r'-?\d+,\d+')
@@ -38,7 +38,7 @@ def document_of(lines: Sequence[str], kind: str = 'JSON') -> Any:
 def cell_of(value: Any) -> str:
     """Return a value as a cell; empty for none, and for lists and objects."""
     is_one = value is not None and not isinstance(value, dict | list)
-    return str(value).replace('\x1f', ' ').replace('\n', ' ') if is_one else ''
+    return str(value).replace('\n', ' ') if is_one else ''
 
 
 def object_of(value: Any) -> dict[str, Any]:
@@ -88,7 +88,7 @@ def flat(
 
 def unit_beside(record: Mapping[str, str], name: str) -> str | None:
     """Return the unit that is beside a value, as ``unitCode`` is; of a wind it is the speed's."""
-    if rank_of(name, 'wind_direction') is not None and not name.endswith('.value'):
+    if is_named(name, 'wind_direction') and not name.endswith('.value'):
         return None
     group = name.rpartition('.')[0]
     beside = (f'{group}.{word}' for word in ('unitCode', 'unit', 'units'))

@@ -1,6 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a file is where another was expected: its kind, and what takes it."""
+"""
+What a file is where another was expected: its kind, and what takes it.
+
+`kinds.csv` has what each kind is called, what takes it, and the outermost keys of YAML that tell
+it, those of a study first as it has trees too.
+"""
 
 from __future__ import annotations
 
@@ -13,29 +18,11 @@ from tree_sway.files.column_names import folded, motion_of
 from tree_sway.files.layouts.known import looks_like_wind, table_of
 from tree_sway.files.text_file import read_head
 from tree_sway.files.yaml_document import begins_with_key
+from tree_sway.tables import table_beside
 
 _ROWS = 60
 """Lines at the beginning of a table that are looked at."""
-_KEYS = {
-    'tree_sway_record': 'record',
-    'winds': 'study',
-    'trees': 'scene',
-    'stand': 'scene',
-    'branches': 'tree',
-}
-"""Outermost keys of YAML that tell a kind, those of a study first as it has trees too."""
-
-_KINDS = {
-    'tree': ('a tree', 'give it as TREE, as in tree-sway info {0}'),
-    'scene': ('a list of trees', 'give it as TREE, as in tree-sway info {0}'),
-    'inventory': ('an inventory of trees', 'give it to tree-sway risk, or as TREE to info'),
-    'wind': ('a record of wind', 'give it behind --wind, as in tree-sway plot --wind {0}'),
-    'motion': ('a record of motion', 'give it behind --motion of tree-sway simulate, with --at'),
-    'sway': ('a table that `tree-sway simulate` wrote', 'give the tree that was simulated'),
-    'study': ('a study', 'run it by tree-sway study {0}'),
-    'record': ('the sheet of a record', 'give its folder to tree-sway lab twin'),
-}
-"""What a kind of files is called, and what takes it."""
+_KINDS = {each['kind']: each for each in table_beside(__file__, 'kinds.csv')}
 
 
 @contextmanager
@@ -47,10 +34,11 @@ def expected(path: Path, *kinds: str) -> Iterator[None]:
         found = kind_of(path)
         if found in kinds or not found:
             raise
-        what, cure = _KINDS[found]
-        wanted = _KINDS[kinds[0]][0]
+        told = _KINDS[found]
         raise FormatError(
-            f'{what}, not {wanted}', where=str(path), cure=cure.format(path.name)
+            f'{told["what"]}, not {_KINDS[kinds[0]]["what"]}',
+            where=str(path),
+            cure=told['cure'].format(path.name),
         ) from None
 
 
@@ -62,8 +50,8 @@ def kind_of(path: Path) -> str:
         from tree_sway.files.wind.wind_formats import WIND_FORMATS
 
         head = read_head(path)
-        for key, kind in _KEYS.items():
-            if begins_with_key(path, head, key):
+        for kind, told in _KINDS.items():
+            if any(begins_with_key(path, head, key) for key in (told['keys'] or '').split()):
                 return kind
         if head.startswith('time [s],wind_x [m/s],'):
             return 'sway'

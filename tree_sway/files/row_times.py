@@ -5,14 +5,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from datetime import datetime, timedelta
 import re
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
-from tree_sway.files.column_names import folded, name_and_unit, rank_of, TIME_PARTS
+from tree_sway.files.column_names import folded, is_named, name_and_unit, TIME_PARTS
 from tree_sway.files.makers import maker_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import finite
@@ -33,26 +32,26 @@ _ZONE = re.compile(r'\b((?:Africa|America|Asia|Atlantic|Australia|Europe|Indian|
 
 def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
     """Columns of the time, the form of several, and the factor to [s]; None without a time."""
-    split = (name_and_unit(column, 'time') for column in table.columns)
-    names = [folded(name) for name, _ in split]
+    names = [folded(name_and_unit(column, 'time')[0]) for column in table.columns]
     for wanted, form in PARTS.items():
         places = [names.index(name) for name in wanted if name in names]
         if len(places) == len(wanted):
             return places, form, 1.0
-    first = range(min(len(table.texts), _LOOKED_AT))
+    first = table.rows[:_LOOKED_AT]
     columns = range(len(table.columns))  # of any name, or without one as an index
-    texts = {each: [*filter(None, table.cells(each, first))] for each in columns}
-    of_day = [each for each in columns if texts[each] and all(map(_is_of_day, texts[each]))]
+    texts = [[*filter(None, map(str.strip, table.cells(each, first)))] for each in columns]
+    of_day = [i for i in columns if texts[i] and all(map(TIME_OF_DAY.fullmatch, texts[i]))]
     clocks = table.find_all('time')
     clocks.sort(key=lambda each: (not _run_on(texts[each]), each in of_day))
+    dated = [each for each in columns if _are_dates(texts[each])]
     if not clocks or not _run_on(texts[clocks[0]]):
-        clocks = [each for each in columns if _are_dates(texts[each])][:1] or clocks
+        clocks = dated[:1] or clocks
     if not clocks:
         return None
-    days = [each for each in columns if _are_days(texts[each])]
+    days = [each for each in dated if not any(':' in cell for cell in texts[each])]
     if days and of_day and clocks[0] in (*days, *of_day):
         return [days[0], of_day[0]], '{0} {1}', 1.0
-    if _are_dates(texts[clocks[0]]):  # what is in brackets is no unit then
+    if clocks[0] in dated:  # what is in brackets is no unit then
         return [clocks[0]], '', 1.0
     unit = table.unit_of(clocks[0], 'time') or maker_of(table).get('time')
     return [clocks[0]], '', table.known_factor('time', unit) if unit else 1.0
@@ -63,18 +62,15 @@ def counted_times(table: TextTable) -> Times | None:
     told = _RATE.search('\n'.join(table.above))
     if told is None:
         return None
-    numbers = [(each or '0').replace(',', '.') for each in told.groups()]
-    rate, step = map(float, numbers)
+    rate, step = (float((each or '0').replace(',', '.')) for each in told.groups())
     hertz = 1.0 / step if step else rate
     if hertz <= 0.0:
         return None
-    rows = np.arange(float(len(table.texts)))
-    counter = table.find('counter')
-    known = rows
-    if counter is not None:
-        counts = table.values([counter.index])[:, 0]
-        known = rows if np.isnan(counts).any() else unwrapped(counts)
-    return Times((known - known[:1]) / hertz, None, f'times are by the rate of {hertz:g} Hz')
+    counts = np.array(table.rows, dtype=np.float64)
+    for index in table.find_all('counter')[:1]:
+        told_counts = table.values([index])[:, 0]
+        counts = counts if np.isnan(told_counts).any() else unwrapped(told_counts)
+    return Times((counts - counts[:1]) / hertz, None, f'times are by the rate of {hertz:g} Hz')
 
 
 def _are_dates(cells: Sequence[str]) -> bool:
@@ -83,18 +79,9 @@ def _are_dates(cells: Sequence[str]) -> bool:
     return not has_numbers and dates(cells).epoch != 0.0
 
 
-def _are_days(cells: Sequence[str]) -> bool:
-    """Whether cells are dates without a time of day."""
-    return _are_dates(cells) and not any(':' in cell for cell in cells)
-
-
-def _is_of_day(cell: str) -> bool:
-    return TIME_OF_DAY.fullmatch(cell.strip()) is not None
-
-
 def _run_on(cells: Sequence[str]) -> bool:
     """Tell whether cells are times that run one way, as temperatures called Ts do not."""
-    if not any(map(str.strip, cells)):
+    if not cells:
         return False
     seconds = times_of(cells).seconds
     seconds = seconds[np.isfinite(seconds)]
@@ -105,32 +92,28 @@ def _run_on(cells: Sequence[str]) -> bool:
 
 
 def row_times(
-    table: TextTable, columns: Sequence[int], form: str, factor: float, rows: list[int]
+    table: TextTable, columns: Sequence[int], form: str, factor: float, rows: Sequence[int]
 ) -> Times:
     """Return the times of some rows, in UTC where the table says its zone."""
     cells = [table.cells(column, rows) for column in columns]
     stamps = cells[0]
-    if form:
-        stamps = [_joined(form, parts) for parts in zip(*cells, strict=True)]
+    if form:  # a date alone may have a midnight behind it
+        parts = zip(*cells, strict=True)
+        stamps = [form.format(day.partition('T00:')[0], *others) for day, *others in parts]
     times = _of_one_year(times_of(stamps, factor))
     has_unit = form or factor != 1.0
     is_dated = times.epoch is not None
     if not (has_unit or is_dated or times.note):
         note = _doubt(table, columns[0], times)
-        times = replace(times, note=note)
+        times = times._replace(note=note)
     names = [table.columns[column] for column in columns]
-    if not form and names[0] and rank_of(names[0], 'time') is None:
+    if not form and names[0] and not is_named(names[0], 'time'):
         said = f'{names[0]} is taken as the time, by its dates'
-        times = replace(times, note='; '.join(filter(None, (said, times.note))))
+        times = times._replace(note='; '.join(filter(None, (said, times.note))))
     zone = _ZONE.search(' '.join(names))
     if zone is None or not is_dated:
         return times
     return _in_utc(times, zone[1])
-
-
-def _joined(form: str, parts: Sequence[str]) -> str:
-    """Return the date of its parts; a date alone may have a midnight behind it."""
-    return form.format(parts[0].partition('T00:')[0], *parts[1:])
 
 
 def _of_one_year(times: Times) -> Times:
@@ -142,8 +125,7 @@ def _of_one_year(times: Times) -> Times:
     months = since_1970.astype('datetime64[s]').astype('datetime64[M]')
     years = months.astype('datetime64[Y]')
     moved = years[0].astype('datetime64[M]') + months.astype(np.int64) % 12
-    before = months.astype('datetime64[s]')
-    shift = moved.astype('datetime64[s]') - before
+    shift = moved.astype('datetime64[s]') - months.astype('datetime64[s]')
     seconds = times.seconds.copy()
     seconds[known] += shift.astype(np.float64)
     goes_back = (np.diff(since_1970) < 0.0).any()
@@ -152,7 +134,7 @@ def _of_one_year(times: Times) -> Times:
     if not (is_apart and rises):
         return times
     note = f'months of several years are taken as those of {years[0]}'
-    return replace(times, seconds=seconds, note=note)
+    return times._replace(seconds=seconds, note=note)
 
 
 def _doubt(table: TextTable, column: int, times: Times) -> str:
@@ -180,16 +162,13 @@ def _in_utc(times: Times, name: str) -> Times:
     try:
         zone = ZoneInfo(name)
     except (ZoneInfoNotFoundError, ValueError):
-        return replace(times, note=f'zone {name} is not known here; times are left as they are')
+        return times._replace(note=f'zone {name} is not known here; times are left as they are')
     epoch = times.epoch or 0.0
-    begin = datetime(1970, 1, 1) + timedelta(seconds=epoch)
+    begin = datetime(1970, 1, 1, tzinfo=zone) + timedelta(seconds=epoch)
     offsets = np.zeros(len(times.seconds))
-    known = np.flatnonzero(np.isfinite(times.seconds))
-    for row in known.tolist():
-        passed = timedelta(seconds=float(times.seconds[row]))
-        local = begin + passed
-        offset = local.replace(tzinfo=zone).utcoffset()
-        offsets[row] = offset.total_seconds() if offset else 0.0
-    shift = float(offsets[known[:1]].sum())
+    known = np.isfinite(times.seconds)
+    moments = (begin + timedelta(seconds=each) for each in times.seconds[known].tolist())
+    offsets[known] = [(each.utcoffset() or timedelta()).total_seconds() for each in moments]
+    shift = float(offsets[known][:1].sum())
     seconds = times.seconds - (offsets - shift)
-    return replace(times, seconds=seconds, epoch=epoch - shift)
+    return times._replace(seconds=seconds, epoch=epoch - shift)

@@ -12,9 +12,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 import re
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,8 +68,9 @@ class Column:
 @dataclass(frozen=True)
 class TextTable:
     """
-    A table whose columns have names: number and text of each line, and its separator.
+    A table whose columns have names: number and text of each line, and how to split it.
 
+    Where the rows are no text but cells, these are the texts.
     ``header_line`` and ``unit_line`` are the lines of names and units; ``units`` are those of the
     columns, if they are in a separate row. ``row_name`` is the name of a row in messages.
     ``above`` are the lines above the header.
@@ -76,14 +78,25 @@ class TextTable:
 
     columns: tuple[str, ...]
     numbers: Sequence[int]
-    texts: Sequence[str]
-    split: Callable[[str], Sequence[str]]
+    texts: Sequence[Any]
+    split: Callable[[Any], Sequence[str]]
     source: str
     header_line: int = 1
     unit_line: int = 1
     units: tuple[str, ...] = ()
     row_name: str = 'line'
     above: tuple[str, ...] = ()
+
+    @property
+    def rows(self) -> range:
+        """Rows of the table, from 0."""
+        return range(len(self.texts))
+
+    def part(self, rows: Iterable[int], name: str = '') -> TextTable:
+        """Return the table of some rows, under a name behind that of its file."""
+        kept = list(rows)
+        numbers, texts = ([of_all[row] for row in kept] for of_all in (self.numbers, self.texts))
+        return replace(self, numbers=numbers, texts=texts, source=f'{self.source}{name}')
 
     def where(self, row: int | None = None) -> str:
         """File and line of a row, or of the header."""
@@ -120,9 +133,8 @@ class TextTable:
             if (rank := rank_of(column, quantity)) is not None
         ]
         found = [index for _, _, index in sorted(ranks)]
-        first = range(min(len(self.texts), _LOOKED_AT))
-        is_chosen = len(found) > 1
-        return sorted(found, key=lambda each: is_chosen and not any(self.cells(each, first)))
+        first = self.rows[:_LOOKED_AT] if len(found) > 1 else ()
+        return sorted(found, key=lambda each: not any(self.cells(each, first)))
 
     def factor_of(self, index: int, quantity: str) -> float:
         """Factor to SI of a column of a quantity; a `FormatError` for an unknown unit."""
@@ -145,12 +157,10 @@ class TextTable:
     def values(self, indices: Iterable[int]) -> Floats:
         """Numbers in some columns, NaN where a cell is not a number, (n, k)."""
         columns = list(indices)
-        result = np.full((len(self.texts), len(columns)), np.nan)
+        result = np.empty((len(self.texts), len(columns)))
         for row, text in enumerate(self.texts):
             cells = self.split(text)
-            for place, index in enumerate(columns):
-                value = finite(cells[index]) if index < len(cells) else None
-                result[row, place] = np.nan if value is None else value
+            result[row] = [finite(cells[each]) if each < len(cells) else None for each in columns]
         return result
 
     def strict(self, names: Sequence[str]) -> Floats:
@@ -191,8 +201,8 @@ class TextTable:
         size = len(self.columns)
         for index, name in enumerate(self.columns):
             if folded(name_and_unit(name, '')[0]) in SENDERS[:-1]:
-                rows = [row for row in map(self.split, self.texts) if len(row) == size]
-                found = sorted({row[index] for row in rows} - {'', name})
+                rows = map(self.split, self.texts)
+                found = sorted({row[index] for row in rows if len(row) == size} - {'', name})
                 if len(found) > 1:
                     raise self.error(
                         f'rows of {len(found)} instruments: {", ".join(found[:4])}',
@@ -205,19 +215,19 @@ class TextTable:
         """
         Return the name of each row in errors (``what`` and number), and its parent's row, or -1.
 
+        Without a name of the column of numbers, these are those of the rows, from 1.
         ``none`` are the parent numbers that mean no parent. A number that occurs twice is a
         `FormatError`, a missing parent a `TreeError`.
         """
-        values = self.strict([number, parent])
-        numbers = self.whole(values[:, 0], number).tolist()
+        own = self.strict([number])[:, 0] if number else np.arange(1.0, len(self.texts) + 1.0)
+        numbers = self.whole(own, number).tolist()
         labels = [f'{self.where(row)}: {what} {each}' for row, each in enumerate(numbers)]
         position: dict[int, int] = {}
         for row, each in enumerate(numbers):
-            if each in position:
+            if position.setdefault(each, row) != row:
                 raise FormatError(f'number {each} occurs twice', where=labels[row])
-            position[each] = row
         parents = np.full(len(numbers), -1, dtype=np.int64)
-        for row, each in enumerate(self.whole(values[:, 1], parent).tolist()):
+        for row, each in enumerate(self.whole(self.strict([parent])[:, 0], parent).tolist()):
             if each in position:
                 parents[row] = position[each]
             elif each not in none:
@@ -254,11 +264,8 @@ def split_row(line: str, separator: str) -> Sequence[str]:
         return line.split()
     if '"' not in line:
         return list(map(str.strip, line.split(separator)))
-    if line.count('"') == 2 and line[0] == '"' and line.count(f'"{separator}') == 1:
-        first, _, rest = line[1:].partition('"')  # a quoted date, as loggers write it
-        return [first.strip(), *map(str.strip, rest[1:].split(separator))]
     try:
-        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+        return list(map(str.strip, next(csv.reader([line], delimiter=separator))))
     except csv.Error:
         return []
 

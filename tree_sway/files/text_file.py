@@ -29,12 +29,7 @@ _ASIAN = (
     (re.compile(rb'(?:\x82[\x9f-\xf1]|\x83[\x40-\x96]){2}'), 'cp932'),
     (re.compile(rb'(?:[\xb0-\xc8][\xa1-\xfe]){2}'), 'cp949'),
 )
-_MARKS = (
-    (b'\xff\xfe\0\0', 'utf-32'),
-    (b'\0\0\xfe\xff', 'utf-32'),
-    (b'\xff\xfe', 'utf-16'),
-    (b'\xfe\xff', 'utf-16'),
-)
+_MARKS = {'utf-32': (b'\xff\xfe\0\0', b'\0\0\xfe\xff'), 'utf-16': (b'\xff\xfe', b'\xfe\xff')}
 """Byte order marks; that of UTF-32 begins as that of UTF-16."""
 _DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
 
@@ -81,8 +76,8 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
     writes CSV in these.
     ``errors`` is for bytes that are none of them.
     """
-    for mark, encoding in _MARKS:
-        if data.startswith(mark):
+    for encoding, marks in _MARKS.items():
+        if data.startswith(marks):
             return data.decode(encoding, errors)
     # ASCII in UTF-16 has a zero byte beside each letter.
     odd = data[1:200:2]

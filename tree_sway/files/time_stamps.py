@@ -14,11 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from datetime import date, timedelta
 from itertools import pairwise
 import math
 import re
+from typing import NamedTuple
 
 import numpy as np
 
@@ -53,12 +53,8 @@ _SINCE_1970 = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (5e8, 1.0))
 
 _DAYS = [tuple(row.values()) for row in table_beside(__file__, 'day_counts.csv')]
 """Least and largest number of a count of days, that of 1970-01-01, and its name."""
-_SERIALS = (
-    (25_569.0, "Excel's days since 1900"),
-    (24_107.0, "Excel's since 1904"),
-    (40_587.0, 'modified Julian days'),
-)
-"""Counts of days whose numbers overlap: that of 1970-01-01, and their name."""
+_SERIALS = _DAYS[:3]
+"""Counts of days whose numbers overlap."""
 _MANY_HOURS = 0.2
 """Step of days that counts of seconds have as well, in [d]."""
 
@@ -68,12 +64,10 @@ _LONGEST_STEP = 100.0
 """Longest step over that number, in usual steps."""
 
 _NONE = np.iinfo(np.int64).min
-_DAY = 86_400_000_000
 _1970 = date(1970, 1, 1)
 
 
-@dataclass(frozen=True)
-class Times:
+class Times(NamedTuple):
     """
     Times of rows.
 
@@ -102,10 +96,9 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
         return times_of([stamp.removesuffix(' sec') for stamp in stamps], factor)
     if finite(first) is None or _DIGITS.fullmatch(first):
         return dates(stamps)
-    numbers = [finite(stamp) for stamp in stamps]
-    values = np.array([np.nan if number is None else number for number in numbers])
-    values = unwrapped(values)
-    size = abs(float(values[np.isfinite(values)][0]))  # what begins at 0 is no date
+    values = unwrapped(np.array([*map(finite, stamps)], dtype=np.float64))
+    origin = float(values[np.isfinite(values)][0])
+    size = abs(origin)  # what begins at 0 is no date
     days = _days(values, factor)
     if days is not None and days.epoch is not None:
         return days
@@ -114,7 +107,6 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
         factor = next((unit for least, unit in _SINCE_1970 if size >= least), 1.0)
     if size * factor < _SINCE_1970[-1][0]:
         return Times(values * factor, None, note)
-    origin = float(values[np.isfinite(values)][0])
     return Times((values - origin) * factor, origin * factor)
 
 
@@ -147,17 +139,18 @@ def _days(values: Floats, factor: float) -> Times | None:
     kind = next((each for each in _DAYS if each[0] <= least and most < each[1]), None)
     if kind is None:
         return None
+    _, _, of_1970, title = kind
     step = float(np.median(np.abs(np.diff(known)))) if len(known) > 1 else 0.0
     is_round = abs(step * 1e3 - round(step * 1e3)) < 1e-3 and step >= 1e-3
     if factor == 1.0 and (is_round or not 0.0 < step < _MANY_HOURS):
-        return Times(values, None, f'times are taken as seconds, not as {kind[3]}')
+        return Times(values, None, f'times are taken as seconds, not as {title}')
     first = float(known[0])
     seconds = np.round((values - first) * 86400.0, 3)
-    note = f'times are taken as {kind[3]}, from {_day(first - kind[2])}'
-    if first < _DAYS[1][1]:
-        others = [each for each in _SERIALS if each[1] != kind[3]]
-        note += ''.join(f'; as {name} from {_day(first - zero)}' for zero, name in others)
-    return Times(seconds, (first - kind[2]) * 86400.0, note)
+    note = f'times are taken as {title}, from {_day(first - of_1970)}'
+    if kind in _SERIALS:
+        others = [each for each in _SERIALS if each != kind]
+        note += ''.join(f'; as {each[3]} from {_day(first - each[2])}' for each in others)
+    return Times(seconds, (first - of_1970) * 86400.0, note)
 
 
 def _day(days: float) -> str:
@@ -202,18 +195,15 @@ def _order(texts: Sequence[str]) -> tuple[bool, str]:
         return False, ''
     if any(int(each['second']) > 12 for each in found):
         return True, ''
-    steps = [_total_step(found, is_month_first) for is_month_first in (True, False)]
+    steps = []  # the sum of all is smallest in the right order
+    for is_month_first in (True, False):
+        times = [_general(each, is_month_first) for each in found]
+        steps.append(sum(abs(b - a) for a, b in pairwise(times)))
     if steps[0] != steps[1]:
         return steps[0] < steps[1], ''
     is_american = any(each['half'] for each in found)
     order = 'month, day' if is_american else 'day, month'
     return is_american, f'dates such as {first[:20]} are taken as {order}'
-
-
-def _total_step(found: Sequence[re.Match[str]], is_month_first: bool) -> int:
-    """Sum of all steps of time, which is smallest in the right order of day and month."""
-    times = [_general(each, is_month_first) for each in found]
-    return sum(abs(b - a) for a, b in pairwise(times))
 
 
 def _microseconds(stamp: str, is_month_first: bool) -> int:
@@ -222,7 +212,7 @@ def _microseconds(stamp: str, is_month_first: bool) -> int:
     if match is not None:
         with suppress(ValueError):  # 24:00, a month 13 or a February 30
             microseconds = int(np.datetime64(match[1], 'us').astype(np.int64))
-            return microseconds - 1_000_000 * (_offset(match[2]) if match[2] else 0)
+            return microseconds - 1_000_000 * _offset(match[2])
     forms = (form.fullmatch(stamp) for form in _FORMS)
     return max((_general(each, is_month_first) for each in forms if each), default=_NONE)
 
@@ -230,8 +220,8 @@ def _microseconds(stamp: str, is_month_first: bool) -> int:
 def _general(match: re.Match[str], is_month_first: bool) -> int:
     """Microseconds after 1970-01-01 of a date in any order; `_NONE` if it is impossible."""
     try:
-        day = date(*_year_month_day(match, is_month_first))
-    except ValueError:
+        day = _date(match, is_month_first)
+    except (ValueError, OverflowError):
         return _NONE
     hour = int(match['hour'] or 0)
     minute = int(match['minute'] or 0)
@@ -242,31 +232,28 @@ def _general(match: re.Match[str], is_month_first: bool) -> int:
         hour = hour % 12 + (12 if match['half'][0] in 'pP' else 0)
     if hour > 24 or minute > 59 or seconds >= 60.0 or (hour == 24 and minute):
         return _NONE
-    days = (day - _1970) // timedelta(days=1)
-    zone = match['zone']
-    offset = _offset(zone) if zone and zone[0] in '+-' else 0
-    whole = 3600 * hour + 60 * minute - offset
-    return days * _DAY + whole * 1_000_000 + round(seconds * 1e6)
+    days = (day - _1970).days
+    whole = 86400 * days + 3600 * hour + 60 * minute - _offset(match['zone'])
+    return whole * 1_000_000 + round(seconds * 1e6)
 
 
-def _year_month_day(match: re.Match[str], is_month_first: bool) -> tuple[int, int, int]:
+def _date(match: re.Match[str], is_month_first: bool) -> date:
     year = int(match['year'])
     if len(match['year']) == 2:
         year += 2000 if year < 70 else 1900
     if match.re is _ORDERED:
         one, two = int(match['first']), int(match['second'])
-        return (year, one, two) if is_month_first else (year, two, one)
+        return date(year, one, two) if is_month_first else date(year, two, one)
     if 'of_year' in match.re.groupindex:
-        day = date(year, 1, 1) + timedelta(days=int(match['of_year']) - 1)
-        return day.year, day.month, day.day
+        return date(year, 1, 1) + timedelta(days=int(match['of_year']) - 1)
     month = match['month'].lower()
     number = _MONTHS.index(month) + 1 if month.isalpha() else int(month)
-    return year, number, int(match['day'])
+    return date(year, number, int(match['day']))
 
 
-def _offset(zone: str) -> int:
-    """Seconds that a zone is ahead of UTC."""
-    if zone == 'Z':
+def _offset(zone: str | None) -> int:
+    """Seconds that a zone is ahead of UTC; 0 without one."""
+    if not zone or zone[0] not in '+-':
         return 0
     sign = -1 if zone[0] == '-' else 1
     minutes = int(zone[-2:]) if len(zone) > 3 else 0

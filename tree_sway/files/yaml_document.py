@@ -12,12 +12,11 @@ clearer.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from importlib.resources import files
 import json
 from pathlib import Path
 import re
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
@@ -31,7 +30,7 @@ YAML_SUFFIXES = ('.yaml', '.yml', '.json')
 _LOADER: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 _MAX_DEPTH = 16
 _MAX_EVENTS = 600_000
-_TYPES = {yaml.MappingNode: 'object', yaml.SequenceNode: 'array', yaml.ScalarNode: 'number'}
+_TYPES = {'mapping': 'object', 'sequence': 'array', 'scalar': 'number'}
 _KINDS = {'object': 'a mapping', 'array': 'a list', 'string': 'a text', 'number': 'a number',
           'integer': 'a whole number', 'boolean': 'true or false'}  # fmt: skip
 _LIMITS = {'minimum': 'at least', 'exclusiveMinimum': 'more than', 'maximum': 'at most',
@@ -57,8 +56,7 @@ def tree_schema() -> Schema:
     return packaged_schema('tree_schema.json')
 
 
-@dataclass(frozen=True)
-class YamlDocument:
+class YamlDocument(NamedTuple):
     """Checked values of a YAML text: numbers where the schema has them, else texts."""
 
     values: dict[str, Any]
@@ -131,28 +129,22 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
     """Plain value of a node, the text itself where the schema has a text."""
     schema = _resolved(schema, root)
     for choice in schema.get('anyOf', ()):
-        if _resolved(choice, root)['type'] == _TYPES[type(node)]:
+        if _resolved(choice, root)['type'] == _TYPES[node.id]:
             schema = _resolved(choice, root)
     if isinstance(node, yaml.MappingNode):
         known = schema.get('properties', {})
         values = dict[str, Any]()
-        lines = dict[str, int]()
         for key, child in node.value:
-            line = key.start_mark.line + 1
+            what = ''
             if not isinstance(key, yaml.ScalarNode):
-                raise FormatError(
-                    f'{_KINDS[_TYPES[type(key)]]} as a key',
-                    where=f'{source}:{line}',
-                    cure='use a word as the key',
-                )
-            if key.value in values:
-                raise FormatError(
-                    f"key '{key.value}' occurs twice, first in line {lines[key.value]}",
-                    where=f'{source}:{line}',
-                    cure='remove one of them',
-                )
+                what, cure = f'{_KINDS[_TYPES[key.id]]} as a key', 'use a word as the key'
+            elif key.value in values:
+                first = _node_at(node, [key.value]).start_mark.line + 1
+                what = f"key '{key.value}' occurs twice, first in line {first}"
+                cure = 'remove one of them'
+            if what:
+                raise FormatError(what, where=f'{source}:{key.start_mark.line + 1}', cure=cure)
             values[key.value] = _value(child, known.get(key.value, {}), root, source)
-            lines[key.value] = child.start_mark.line + 1
         return values
     if isinstance(node, yaml.SequenceNode):
         inside = _resolved(schema.get('items', {}), root)
@@ -222,7 +214,7 @@ def _error(document: YamlDocument, error: Any) -> FormatError:
     else:
         node = _node_at(document.root, path)
         cure = _wanted(error.schema, document.schema)
-        what = f'{name} is {_KINDS[_TYPES[type(node)]]} of {len(node.value)}'
+        what = f'{name} is {_KINDS[_TYPES[node.id]]} of {len(node.value)}'
         if isinstance(node, yaml.ScalarNode):
             what = f"{name} is '{node.value[:40]}'"
             cure += ', finite, without quotes or unit' * ('number' in cure)

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from zipfile import BadZipFile, is_zipfile, ZipFile
 import zlib
@@ -13,9 +13,17 @@ from tree_sway.errors import FormatError
 from tree_sway.files.text_file import decoded, read_bytes, read_lines, reason_of, table_lines
 
 _MOST_FILES = 200
+_HEAD = 200
 _MOST_BYTES = 64 << 20
 """Largest size of all tables of a zip that are unpacked [bytes]."""
 _SUFFIXES = ('.csv', '.txt', '.tsv', '.dat', '.json')
+
+
+def table_in(path: Path, is_wanted: Callable[[str], bool]) -> tuple[str, list[str]]:
+    """Return name and lines of the first table in a file that begins as wanted, else the first."""
+    tables = list(tables_in(path))
+    wanted = (each for each in tables if is_wanted('\n'.join(each[1][:_HEAD])))
+    return next(wanted, tables[0])
 
 
 def tables_in(path: Path) -> Iterator[tuple[str, list[str]]]:

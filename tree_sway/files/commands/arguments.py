@@ -18,7 +18,7 @@ from tree_sway.core.settings import model_of, Settings
 from tree_sway.core.setup import LEAVES
 from tree_sway.core.species import Species, species_named
 from tree_sway.core.tree import Tree
-from tree_sway.errors import ParameterError, shown, SpeciesError
+from tree_sway.errors import inside, ParameterError, shown, SpeciesError
 from tree_sway.files import reader_options, refuse_unwritable
 from tree_sway.files.commands.typed_names import tree_name
 from tree_sway.files.export import write_tree
@@ -136,8 +136,8 @@ def _species(arguments: argparse.Namespace) -> Species | None:
 
 def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
     """Values that replace those of the species."""
-    given = {name: getattr(arguments, name) for name in ('modulus', 'density')}
-    changed = {name: value for name, value in given.items() if value is not None}
+    names = ('modulus', 'density')
+    changed = {name: value for name in names if (value := getattr(arguments, name)) is not None}
     for name, value in changed.items():
         if not 0.0 < value < math.inf:
             raise ParameterError(
@@ -149,10 +149,8 @@ def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:
-    try:
+    with inside('--option'):
         return reader_options(arguments.option)
-    except ParameterError as error:
-        raise error.at('--option') from None
 
 
 def add_exact_argument(parser: argparse.ArgumentParser) -> None:

@@ -90,8 +90,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
     if arguments.leaves is None:
         arguments.leaves = 'on' if suffix in _DRAWN else 'auto'
-    moments = None if arguments.at is None else moments_of(arguments.at)
-    count = len(moments or (0.0,))
+    moments = [] if arguments.at is None else moments_of(arguments.at)
+    count = max(1, len(moments))
     paths = numbered_paths(output, count, may_overwrite=suffix != '.obj' or arguments.force)
     scene = opened_scene(arguments)
     for note in scene.notes:
@@ -108,9 +108,8 @@ def run(arguments: argparse.Namespace) -> int:
         one = scene.trees[0]
         write_tree(output, TreeFile(scene.tree, one.species, scene.source, learned=one.learned))
     else:
-        species = scene.species if scene.is_one_tree else None
         leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
-        write_tree(output, scene.tree, species, leaves)
+        write_tree(output, scene.tree, leaves=leaves)
     written = f'{paths[0]} to {paths[-1].name}, {count} moments' if count > 1 else paths[0]
     print(what_was_written(str(written), scene.tree))
     return 0
@@ -125,13 +124,13 @@ _FORMATS = (*SUFFIXES, MODEL_SUFFIX, NATIVE_SUFFIX, '.html', *_USD, *_HINGED, '.
 
 
 def _write_moments(
-    scene: Scene, arguments: argparse.Namespace, moments: list[float] | None, paths: list[Path]
+    scene: Scene, arguments: argparse.Namespace, moments: list[float], paths: list[Path]
 ) -> None:
     """Write the triangles of a scene at rest, or of each moment in wind to its file."""
     files = ObjScene(scene.tree, drawn_leaves(scene, arguments))
     name = scene.name
     axes = 'metres, x east, y north, z up'
-    if moments is None:
+    if not moments:
         write_text_whole(paths[0], files.text(scene.tree.rest_poses, f'{name} at rest; {axes}'))
         return
     wind = opened_wind(arguments)

@@ -14,25 +14,24 @@ from numpy.typing import NDArray
 _COMPONENTS = {
     'int8': 5120,
     'uint8': 5121,
-    'int16': 5122,
     'uint16': 5123,
     'uint32': 5125,
     'float32': 5126,
 }
-_SHAPES = {(): 'SCALAR', (2,): 'VEC2', (3,): 'VEC3', (4,): 'VEC4', (4, 4): 'MAT4'}
-_LINEAR = 9729
-_LINEAR_MIPMAP_LINEAR = 9987
-_REPEAT = 10497
+_SHAPES = {1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4', 16: 'MAT4'}
+_SAMPLER = {'magFilter': 9729, 'minFilter': 9987, 'wrapS': 10497, 'wrapT': 10497}
+"""Linear, between small copies of a picture too, which goes on beyond its edges."""
 ARRAY_BUFFER = 34962
 ELEMENT_ARRAY_BUFFER = 34963
 
 
 class GltfDocument:
-    """A document to which objects and arrays are added; ``generator`` is its program."""
+    """A document of one scene to which objects and arrays are added."""
 
-    def __init__(self, generator: str) -> None:
+    def __init__(self) -> None:
         """Begin with an empty document."""
-        self._json: dict[str, Any] = {'asset': {'version': '2.0', 'generator': generator}}
+        asset = {'version': '2.0', 'generator': 'tree_sway'}
+        self._json: dict[str, Any] = {'asset': asset, 'scene': 0, 'samplers': [_SAMPLER]}
         self._bytes = bytearray()
 
     def add(self, kind: str, **properties: Any) -> int:
@@ -83,7 +82,7 @@ class GltfDocument:
             componentType=_COMPONENTS[array.dtype.name],
             normalized=is_share or None,
             count=len(array),
-            type=_SHAPES[array.shape[1:]],
+            type=_SHAPES[columns.shape[1]],
             min=columns.min(axis=0).tolist() if bounds else None,
             max=columns.max(axis=0).tolist() if bounds else None,
         )
@@ -93,10 +92,6 @@ class GltfDocument:
         view = self.add('bufferViews', buffer=0, byteOffset=len(self._bytes), byteLength=len(png))
         self._bytes += png + b'\0' * (-len(png) % 4)
         image = self.add('images', name=name, mimeType='image/png', bufferView=view)
-        sampler = {'magFilter': _LINEAR, 'minFilter': _LINEAR_MIPMAP_LINEAR}
-        samplers = self._json.setdefault('samplers', [])
-        if not samplers:
-            samplers.append({**sampler, 'wrapS': _REPEAT, 'wrapT': _REPEAT})
         return self.add('textures', source=image, sampler=0)
 
     def glb(self) -> bytes:

@@ -12,7 +12,7 @@ the node of the tree has the rotation, and everything inside it is in our frame.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,15 +22,13 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.model import MARGIN, StateBasis
 from tree_sway.core.run import basis_of, SwaySimulator
-from tree_sway.core.species import look_of
 from tree_sway.core.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.export.breeze import in_breeze, RATE
 from tree_sway.files.export.gltf_document import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, GltfDocument
-from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
-from tree_sway.files.export.tree_mesh import crown_mesh, TreeMesh, wood_mesh
+from tree_sway.files.export.tree_mesh import matrices_of
+from tree_sway.files.export.tree_parts import parts_of, TreePart
 
-_GENERATOR = 'tree_sway'
 _Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 _MAX_JOINTS = 65536
 _SWING = 0.5
@@ -65,7 +63,7 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
             where=tree.name,
             cure='convert its trees one by one',
         )
-    document = GltfDocument(_GENERATOR)
+    document = GltfDocument()
     poses = tree.rest_poses
     joints = list(range(1, tree.n_segments + 1))
     root = document.add('nodes', name=tree.name, rotation=_Y_UP, children=joints)
@@ -74,19 +72,12 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     inverse = document.add_array(_inverse_matrices(poses))
     skin = document.add('skins', joints=joints, skeleton=root, inverseBindMatrices=inverse)
     primitives = []
-    for material, mesh in _meshes(tree, leaves, _SHOOTS):
-        points = mesh.placed(poses)
-        primitive = _primitive(
-            document,
-            material,
-            tree.species,
-            mesh,
-            POSITION=_add_floats(document, points, bounds=True),
-            NORMAL=_add_floats(document, mesh.turned(poses)),
-        )
+    for part in parts_of(tree, leaves, _SHOOTS):
+        mesh = part.mesh
+        primitive = _primitive(document, part, mesh.placed(poses), mesh.turned(poses))
         joint = np.zeros((len(mesh.points), 4), dtype=np.uint16)
-        weight = np.zeros((len(mesh.points), 4), dtype=np.uint8)
         joint[:, 0] = mesh.segment
+        weight = np.zeros(joint.shape, dtype=np.uint8)
         weight[:, 0] = 255
         primitive['attributes'] |= {
             'JOINTS_0': document.add_array(joint, target=ARRAY_BUFFER),
@@ -97,7 +88,6 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     # Viewers ignore the place of the node of a skinned mesh: it is next to the joints.
     shown = document.add('nodes', name=f'{tree.name} mesh', mesh=body, skin=skin)
     document.add('scenes', nodes=[root, shown])
-    document.set(scene=0)
     return document
 
 
@@ -116,12 +106,12 @@ def morphing_tree(
     tree = simulator.tree
     basis = basis_of(simulator)
     storm = basis.scale / MARGIN
-    document = GltfDocument(_GENERATOR)
+    document = GltfDocument()
     rest = tree.rest_poses
-    meshes = _meshes(tree, leaves, _FEW_SHOOTS)
+    parts = parts_of(tree, leaves, _FEW_SHOOTS)
     steps = [_swung(simulator, basis, k, storm[k]) for k in range(basis.n_coordinates)]
-    changes = [[_change(material, mesh, step) for step in steps] for material, mesh in meshes]
-    places = [mesh.placed(rest) for _, mesh in meshes]
+    changes = [[_change(part, step) for step in steps] for part in parts]
+    places = [part.mesh.placed(rest) for part in parts]
     low, high = (limit(np.vstack(places), axis=0) for limit in (np.min, np.max))
     size = _MOVED * float((high - low)[:2].min())
     middle = 0.5 * (low + high)
@@ -130,15 +120,9 @@ def morphing_tree(
     names = [f'sway {k + 1}' for k in range(basis.n_coordinates)]
     add = _add_shares if small else _add_floats
     primitives = []
-    for (material, mesh), points, moved in zip(meshes, places, changes, strict=True):
-        primitive = _primitive(
-            document,
-            material,
-            tree.species,
-            mesh,
-            POSITION=_add_floats(document, (points - middle) / size, bounds=True),
-            NORMAL=add(document, mesh.turned(rest)),
-        )
+    for part, points, moved in zip(parts, places, changes, strict=True):
+        scaled = (points - middle) / size
+        primitive = _primitive(document, part, scaled, part.mesh.turned(rest), add)
         primitive['targets'] = [
             {'POSITION': add(document, change / most, bounds=True)}
             for change, most in zip(moved, greatest, strict=True)
@@ -161,7 +145,6 @@ def morphing_tree(
         translation=Rotation.from_quat(_Y_UP).apply(middle).tolist(),
     )  # fmt: skip
     document.add('scenes', nodes=[shown])
-    document.set(scene=0)
     if small:
         quantised = ['KHR_mesh_quantization']
         document.set(extensionsUsed=quantised, extensionsRequired=quantised)
@@ -170,13 +153,6 @@ def morphing_tree(
     )
     _add_animation(document, shown, np.array(weights))
     return document
-
-
-def _meshes(tree: Tree, leaves: LeafClusters | None, shoots: int) -> list[tuple[str, TreeMesh]]:
-    wood = ('bark', wood_mesh(tree))
-    if leaves is None:
-        return [wood]
-    return [wood, ('leaves', crown_mesh(tree, leaves, look_of(tree.species).spray, shoots))]
 
 
 def _add_floats(document: GltfDocument, values: Floats, **options: bool) -> int:
@@ -191,30 +167,33 @@ def _add_shares(document: GltfDocument, values: Floats, **options: bool) -> int:
 
 
 def _primitive(
-    document: GltfDocument, material: str, species: str, mesh: TreeMesh, **attributes: int
+    document: GltfDocument,
+    part: TreePart,
+    points: Floats,
+    normals: Floats,
+    add: Callable[[GltfDocument, Floats], int] = _add_floats,
 ) -> dict[str, Any]:
-    """Part of a mesh, with its colour, texture coordinates and further attributes of vertices."""
-    is_bark = material == 'bark'
-    look = look_of(species)
-    color = look.bark if is_bark else (1.0, 1.0, 1.0)
-    png = bark_picture(look.bark_pattern) if is_bark else leaf_picture(species)
-    # Leaves are there from both sides: viewers turn the normals of a back, which is dark then.
-    triangles = mesh.triangles if is_bark else np.vstack([mesh.triangles, mesh.triangles[:, ::-1]])
-    kind = np.uint16 if len(mesh.points) < 65535 else np.uint32  # 65535 starts a new strip
+    """Part of a mesh at its places, with normals of a kind of numbers, texture and material."""
+    triangles = part.mesh.triangles
+    if not part.is_wood:
+        # From both sides: viewers turn the normals of a back, which is dark then.
+        triangles = np.vstack([triangles, triangles[:, ::-1]])
+    kind = np.uint16 if len(points) < 65535 else np.uint32  # 65535 starts a new strip
     return {
         'attributes': {
-            **attributes,
-            'TEXCOORD_0': _add_floats(document, mesh.texture),
+            'POSITION': _add_floats(document, points, bounds=True),
+            'NORMAL': add(document, normals),
+            'TEXCOORD_0': _add_floats(document, part.mesh.texture),
         },
         'indices': document.add_array(triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER),
         'material': document.add(
             'materials',
-            name=material,
-            alphaMode=None if is_bark else 'MASK',
-            alphaCutoff=None if is_bark else _CUTOFF,
+            name=part.material,
+            alphaMode=None if part.is_wood else 'MASK',
+            alphaCutoff=None if part.is_wood else _CUTOFF,
             pbrMetallicRoughness={
-                'baseColorTexture': {'index': document.add_picture(material, png)},
-                'baseColorFactor': [*(round(c**2.2, 3) for c in color), 1.0],
+                'baseColorTexture': {'index': document.add_picture(part.material, part.picture)},
+                'baseColorFactor': [*part.linear_tint, 1.0],
                 'metallicFactor': 0.0,
                 'roughnessFactor': 1.0,
             },
@@ -224,12 +203,9 @@ def _primitive(
 
 def _inverse_matrices(poses: Floats) -> Any:
     """Inverse of each pose as a matrix by columns, (n, 4, 4)."""
-    rotation = Rotation.from_quat(poses[:, 3:]).as_matrix()
-    columns = np.zeros((len(poses), 4, 4))
-    columns[:, :3, :3] = rotation  # columns of the transpose
-    columns[:, 3, :3] = -np.einsum('nij,ni->nj', rotation, poses[:, :3])
-    columns[:, 3, 3] = 1.0
-    return columns.astype(np.float32)
+    back = Rotation.from_quat(poses[:, 3:]).inv()
+    inverse = np.hstack([-back.apply(poses[:, :3]), back.as_quat()])
+    return matrices_of(inverse).astype(np.float32)
 
 
 def _swung(
@@ -238,15 +214,18 @@ def _swung(
     """Poses with one coordinate at plus and at minus a share of its unit."""
     coordinates = np.zeros(basis.n_coordinates)
     coordinates[k] = _SWING * size
-    rotations = basis.rotations(coordinates), basis.rotations(-coordinates)
-    there, back = (simulator.place_rotations(each).copy() for each in rotations)
+    there, back = (
+        simulator.place_rotations(basis.rotations(each)).copy()
+        for each in (coordinates, -coordinates)
+    )
     return there, back
 
 
-def _change(material: str, mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:
+def _change(part: TreePart, step: tuple[Floats, Floats]) -> Floats:
     """Return the motion of vertices per unit of a coordinate, by a central difference."""
-    if material == 'bark':  # a ring moves with its centre, so that rounding keeps its shape
-        mesh = replace(mesh, points=mesh.points * [1.0, 0.0, 0.0])
+    mesh = part.mesh
+    if part.is_wood:  # a ring moves with its centre, so that rounding keeps its shape
+        mesh = mesh._replace(points=mesh.points * [1.0, 0.0, 0.0])
     return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
 
 

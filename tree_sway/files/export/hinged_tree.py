@@ -13,7 +13,6 @@ and the factor makes up for both.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 import math
 import re
 from typing import NamedTuple
@@ -43,8 +42,7 @@ _N_POINTS = 4
 """Points of integration by Gauss and Legendre on each half of a segment."""
 
 
-@dataclass(frozen=True)
-class HingedTree:
+class HingedTree(NamedTuple):
     """
     Bodies of the segments, each in the frame of its segment: x along it.
 
@@ -118,14 +116,15 @@ def hinged_tree(simulator: SwaySimulator, *, has_twist_and_weight: bool = True) 
     settings = simulator.settings
     species = simulator.models[0].species
     bodies = _bodies(tree, species.density, _spread(tree, settings.leaf_mass))
-    hinges = _Hinges.of(tree, 3 if has_twist_and_weight else 2)
+    n_axes = 3 if has_twist_and_weight else 2
+    hinges = _Hinges.of(tree, bodies, n_axes)
     root_stiffness = settings.root_stiffness or species.root_stiffness
-    springs = _springs(tree, species, root_stiffness, hinges.axes.shape[1])
-    mass_matrix = _mass_matrix(tree, bodies, hinges)
+    springs = _springs(tree, species, root_stiffness)[:, :n_axes]
+    mass_matrix = hinges.mass_matrix()
     moment = np.zeros(springs.shape)
     weight_stiffness = sparse.csc_matrix(mass_matrix.shape)
     if has_twist_and_weight:
-        moment, weight_stiffness = _weight(tree, bodies, hinges)
+        moment, weight_stiffness = hinges.weight()
     circular_frequency = 2.0 * math.pi * float(simulator.frequencies(1)[0])
     stiffness = sparse.diags(springs.ravel()).tocsc()
     factor, share = _factor_on_springs(
@@ -209,7 +208,7 @@ def _drag_area(simulator: SwaySimulator) -> Floats:
 
 class _Points(NamedTuple):
     """
-    Points of integration on both halves of the segments, (n, 2, `_N_POINTS`).
+    Points of integration on both halves of the segments, (n, 2 `_N_POINTS`).
 
     ``share``: place along the segment as a share of its length; ``part``: length that the point
     stands for [m]; ``diameter`` [m].
@@ -223,28 +222,22 @@ class _Points(NamedTuple):
 def _points(tree: Tree) -> _Points:
     """Return the points of a tree."""
     point, weight = np.polynomial.legendre.leggauss(_N_POINTS)
-    share = np.stack([0.25 + 0.25 * point, 0.75 + 0.25 * point])[None]
+    share = np.concatenate([0.25 + 0.25 * point, 0.75 + 0.25 * point])
     length, base, tip = (
-        each[:, None, None] for each in (tree.length, tree.base_diameter, tree.tip_diameter)
+        each[:, None] for each in (tree.length, tree.base_diameter, tree.tip_diameter)
     )
-    part = length * 0.25 * weight
-    diameter = base + (tip - base) * share
-    return _Points(share, part, diameter)
+    part = length * 0.25 * np.tile(weight, 2)
+    return _Points(share, part, base + (tip - base) * share)
 
 
-def _frames(tree: Tree) -> Floats:
-    """Axes of the segments at rest in the columns of matrices, (n, 3, 3)."""
-    return np.asarray(Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix())
-
-
-def _springs(tree: Tree, wood: Species, root_stiffness: float, n_axes: int) -> Floats:
-    """Stiffness of the hinges [N m/rad], (n, n_axes): two of bending, and one of twist."""
+def _springs(tree: Tree, wood: Species, root_stiffness: float) -> Floats:
+    """Stiffness of the hinges [N m/rad], (n, 3): two of bending, and one of twist."""
     compliance = _compliance(tree, wood.modulus)
     # A round section has twice the second moment for twist that it has for bending.
     twist = 2.0 * wood.shear_ratio / compliance
     compliance[0] += 1.0 / root_stiffness
     bending = 1.0 / compliance
-    return np.stack([bending, bending, twist], axis=1)[:, :n_axes]
+    return np.column_stack([bending, bending, twist])
 
 
 def _compliance(tree: Tree, modulus: float) -> Floats:
@@ -255,10 +248,10 @@ def _compliance(tree: Tree, modulus: float) -> Floats:
     branch = tree.branch_of_segment
     # The moment is constant in a segment with children, and that of a uniform load in the last.
     to_end = 1.0 - points.share
-    has_children = np.isin(np.arange(tree.n_segments), parent)[:, None, None]
+    has_children = np.isin(np.arange(tree.n_segments), parent)[:, None]
     moment = np.where(has_children, 1.0, to_end**2)
-    at_start = (to_end * moment * bend).sum(axis=(1, 2))
-    at_end = (points.share * bend).sum(axis=(1, 2))
+    at_start = (to_end * moment * bend).sum(axis=1)
+    at_end = (points.share * bend).sum(axis=1)
     is_last_of_branch = np.isin(parent, tree.branch_first[1:] - 1)
     continues = (branch == branch[parent]) | is_last_of_branch
     return at_start + np.where(continues & (parent >= 0), at_end[parent], 0.0)
@@ -275,15 +268,15 @@ class _Bodies(NamedTuple):
 def _bodies(tree: Tree, density: float, leaf_line: Floats) -> _Bodies:
     """Bodies of the segments with leaves of a mass per length [kg/m], (n,)."""
     points = _points(tree)
-    along = tree.length[:, None, None] * points.share
+    along = tree.length[:, None] * points.share
     wood = density * np.pi / 4.0 * points.diameter**2 * points.part
-    total = wood + leaf_line[:, None, None] * points.part
-    mass = total.sum(axis=(1, 2))
-    centre = (total * along).sum(axis=(1, 2)) / mass
-    disc = (wood * points.diameter**2).sum(axis=(1, 2)) / 16.0
-    about_start = (total * along**2).sum(axis=(1, 2))
+    total = wood + leaf_line[:, None] * points.part
+    mass = total.sum(axis=1)
+    centre = (total * along).sum(axis=1) / mass
+    disc = (wood * points.diameter**2).sum(axis=1) / 16.0
+    about_start = (total * along**2).sum(axis=1)
     across = about_start - mass * centre**2 + disc
-    inertia = np.stack([2.0 * disc, across], axis=1)
+    inertia = np.column_stack([2.0 * disc, across])
     return _Bodies(mass, centre, inertia)
 
 
@@ -291,82 +284,77 @@ class _Hinges(NamedTuple):
     """
     Axes of the hinges at rest, and which of them carry which bodies.
 
+    ``frame``: axes of the segments in the columns of matrices, (n, 3, 3).
     ``axes``: unit vectors of the hinges of each segment in the order of the joints, (n, k, 3).
     ``hinge`` and ``body``: each pair of a segment and one that it carries or is, (p,).
+    ``lever``: centres of the bodies from the hinges that carry them [m], (p, 3).
     """
 
+    bodies: _Bodies
+    frame: Floats
     axes: Floats
     hinge: Ints
     body: Ints
+    lever: Floats
 
     @classmethod
-    def of(cls, tree: Tree, n_axes: int) -> _Hinges:
+    def of(cls, tree: Tree, bodies: _Bodies, n_axes: int) -> _Hinges:
         """Return the hinges of a tree about y, z and, of three, x of its segments."""
-        frame = _frames(tree)
-        axes = np.stack([frame[:, :, 1], frame[:, :, 2], frame[:, :, 0]], axis=1)[:, :n_axes]
+        frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
+        axes = frame.transpose(0, 2, 1)[:, [1, 2, 0][:n_axes]]
         chains: list[list[int]] = []
         for segment, parent in enumerate(tree.segment_parent.tolist()):
             chains.append([*(chains[parent] if parent >= 0 else ()), segment])
-        body = np.repeat(np.arange(tree.n_segments), [len(chain) for chain in chains])
-        hinge = np.concatenate([np.array(chain) for chain in chains])
-        return cls(axes, hinge, body)
+        hinge, body = np.array([(each, chain[-1]) for chain in chains for each in chain]).T
+        centre = tree.start + bodies.centre[:, None] * frame[:, :, 0]
+        return cls(bodies, frame, axes, hinge, body, centre[body] - tree.start[hinge])
 
     def numbers(self, segment: Ints) -> Ints:
         """Return the numbers of the hinges of segments, (p, k)."""
         n_axes = self.axes.shape[1]
         return np.asarray(n_axes * segment[:, None] + np.arange(n_axes))
 
+    def mass_matrix(self) -> sparse.csc_matrix:
+        """
+        Mass matrix of the hinges at rest, (k n, k n), in the order of the segments.
 
-def _levers(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> Floats:
-    """Centres of the bodies from the hinges that carry them [m], (p, 3)."""
-    centre = tree.start + bodies.centre[:, None] * _frames(tree)[:, :, 0]
-    return np.asarray(centre[hinges.body] - tree.start[hinges.hinge])
+        It is J^T M J, with the Jacobian J of the bodies' motions by the rates of the hinges from
+        the root to each body.
+        """
+        n, n_axes, _ = self.axes.shape
+        size = n_axes * n
+        axes = self.axes[self.hinge]
+        speed = np.cross(axes, self.lever[:, None])
+        spin = np.einsum('kij,khi->khj', self.frame[self.body], axes)  # about the body's own axes
+        place = np.repeat(self.body, n_axes), self.numbers(self.hinge).ravel()
+        along, across = self.bodies.inertia.T
+        total = sparse.csc_matrix((size, size))
+        for axis, inertia in enumerate((along, across, across)):
+            for rate, weight in ((speed, self.bodies.mass), (spin, inertia)):
+                jacobian = sparse.csc_matrix((rate[:, :, axis].ravel(), place), (n, size))
+                total += jacobian.T @ sparse.diags(weight) @ jacobian
+        return total
 
+    def weight(self) -> tuple[Floats, sparse.csc_matrix]:
+        """
+        Moments of the weight about the hinges [N m], (n, k), and its stiffness, (k n, k n).
 
-def _mass_matrix(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> sparse.csc_matrix:
-    """
-    Mass matrix of the hinges at rest, (k n, k n), in the order of the segments.
-
-    It is J^T M J, with the Jacobian J of the bodies' motions by the rates of the hinges from the
-    root to each body.
-    """
-    n = tree.n_segments
-    axes = hinges.axes[hinges.hinge]
-    lever = _levers(tree, bodies, hinges)
-    speed = np.cross(axes, lever[:, None])
-    spin = np.einsum('kij,khi->khj', _frames(tree)[hinges.body], axes)  # about the body's own axes
-    column = hinges.numbers(hinges.hinge).ravel()
-    row = np.repeat(hinges.body, axes.shape[1])
-    size = axes.shape[1] * n
-    along, across = bodies.inertia.T
-    total = sparse.csc_matrix((size, size))
-    for axis, inertia in enumerate((along, across, across)):
-        for rate, weight in ((speed, bodies.mass), (spin, inertia)):
-            jacobian = sparse.csc_matrix((rate[:, :, axis].ravel(), (row, column)), (n, size))
-            total += jacobian.T @ sparse.diags(weight) @ jacobian
-    return total
-
-
-def _weight(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> tuple[Floats, sparse.csc_matrix]:
-    """
-    Moments of the weight about the hinges at rest [N m], (n, k), and its stiffness, (k n, k n).
-
-    With r the sum of mass times lever of all that a hinge j carries, the potential grows by
-    g e_z (a_j x r) per angle, and that by g e_z (a_i x (a_j x r)) per angle of a hinge i below it.
-    """
-    lever = _levers(tree, bodies, hinges)
-    carried = np.zeros((tree.n_segments, 3))
-    np.add.at(carried, hinges.hinge, bodies.mass[hinges.body, None] * lever)
-    turned = np.cross(hinges.axes, carried[:, None])
-    moment = -_GRAVITY * turned[:, :, 2]
-    lower = hinges.axes[hinges.hinge]
-    upper = turned[hinges.body]
-    change = np.cross(lower[:, :, None], upper[:, None])[..., 2] * _GRAVITY
-    # Hinges of one segment turn one after another.
-    n_axes = hinges.axes.shape[1]
-    change[hinges.hinge == hinges.body] *= np.triu(np.ones((n_axes, n_axes)))
-    row = np.repeat(hinges.numbers(hinges.hinge), n_axes, axis=1).ravel()
-    column = np.tile(hinges.numbers(hinges.body), n_axes).ravel()
-    size = n_axes * tree.n_segments
-    half = sparse.csc_matrix((change.ravel(), (row, column)), (size, size))
-    return moment, half + half.T - sparse.diags(half.diagonal())
+        With r the sum of mass times lever of all that a hinge j carries, the potential grows by
+        g e_z (a_j x r) per angle, and that by g e_z (a_i x (a_j x r)) per angle of a hinge i below
+        it.
+        """
+        n, n_axes, _ = self.axes.shape
+        size = n_axes * n
+        carried = np.zeros((n, 3))
+        np.add.at(carried, self.hinge, self.bodies.mass[self.body, None] * self.lever)
+        turned = np.cross(self.axes, carried[:, None])
+        lower = self.axes[self.hinge]
+        upper = turned[self.body]
+        change = np.cross(lower[:, :, None], upper[:, None])[..., 2] * _GRAVITY
+        # Hinges of one segment turn one after another.
+        change[self.hinge == self.body] *= np.triu(np.ones((n_axes, n_axes)))
+        row = np.repeat(self.numbers(self.hinge), n_axes, axis=1).ravel()
+        column = np.tile(self.numbers(self.body), n_axes).ravel()
+        half = sparse.csc_matrix((change.ravel(), (row, column)), (size, size))
+        moment = -_GRAVITY * turned[:, :, 2]
+        return moment, half + half.T - sparse.diags(half.diagonal())

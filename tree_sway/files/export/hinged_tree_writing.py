@@ -15,7 +15,6 @@ gives both the same drag in the mean of all horizontal winds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 import re
 from xml.sax.saxutils import quoteattr
 
@@ -33,47 +32,28 @@ _BEARINGS = 12
 """Winds from half the horizon, the other half being alike, that drags are the mean of."""
 _NOT_IN_XML = re.compile('[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]')
 
-_BODY = """\
-<body name="{name}" pos="{place}" quat="{wxyz}">
-<inertial pos="{centre} 0 0" mass="{mass}" diaginertia="{turning} {across} {across}"/>
-{joints}
-<geom fromto="0 0 0 {length} 0 0" size="{radius}" fluidcoef="{drag} 0 0 0 0"/>"""
-
 _AXES = {'y': '0 1 0', 'z': '0 0 1', 'x': '1 0 0'}
 """Axes of the hinges of a segment in its frame, in the order of `HingedTree.stiffness`."""
-
-_SHAPE = """\
-<{kind} name="{kind}"><pose>{middle} 0 0 0 1.5707963 0</pose>
-<geometry><cylinder><radius>{radius}</radius><length>{length}</length></cylinder></geometry>
-</{kind}>"""
-_AXIS = """\
-<{axis}><xyz>{along}</xyz><limit><lower>-1.57</lower><upper>1.57</upper></limit>
-<dynamics><damping>{damping}</damping><spring_reference>0</spring_reference>
-<spring_stiffness>{stiffness}</spring_stiffness></dynamics></{axis}>"""
-_LINK = f"""\
-<link name="{{name}}"><gravity>false</gravity>
-<pose relative_to="{{frame}}" rotation_format="quat_xyzw">{{place}} {{xyzw}}</pose>
-<inertial><pose>{{centre}} 0 0 0 0 0</pose><mass>{{mass}}</mass>
-<inertia><ixx>{{turning}}</ixx><iyy>{{across}}</iyy><izz>{{across}}</izz></inertia></inertial>
-{_SHAPE.replace('{kind}', 'visual')}
-{_SHAPE.replace('{kind}', 'collision')}</link>
-<joint name="{{name}}_joint" type="universal"><parent>{{parent}}</parent><child>{{name}}</child>
-{_AXIS.replace('{axis}', 'axis').replace('{along}', '0 1 0')}
-{_AXIS.replace('{axis}', 'axis2').replace('{along}', '0 0 1')}</joint>"""
 
 
 def mjcf_of_tree(simulator: SwaySimulator) -> str:
     """Return the tree of a simulator as MJCF, MuJoCo's model file."""
     tree = simulator.tree
     hinged = hinged_tree(simulator)
+    radius = _radii(tree)
+    drag = _drag_coefficients(tree, hinged.drag_area, radius)
     inside: list[list[str]] = [[] for _ in range(tree.n_segments + 1)]  # of bodies, and the world
-    texts = [
-        _BODY.format_map({**values, 'joints': _joints(hinged, segment)})
-        for segment, values in enumerate(_values(tree, hinged))
-    ]
-    for body in range(tree.n_segments - 1, -1, -1):  # children come after their parents
-        text = '\n'.join([texts[body], *reversed(inside[body]), '</body>'])
-        inside[int(tree.segment_parent[body])].append(text)
+    for i in range(tree.n_segments - 1, -1, -1):  # children come after their parents
+        body = f"""\
+<body name="{hinged.names[i]}" pos="{_text(hinged.poses[i, :3])}"
+quat="{_text(hinged.poses[i, [6, 3, 4, 5]])}">
+<inertial pos="{_text(hinged.centre[i])} 0 0" mass="{_text(hinged.mass[i])}"
+diaginertia="{_text(hinged.inertia[i, [0, 1, 1]])}"/>
+{_joints(hinged, i)}
+<geom fromto="0 0 0 {_text(tree.length[i])} 0 0" size="{_text(radius[i])}"
+fluidcoef="{_text(drag[i])} 0 0 0 0"/>"""
+        text = '\n'.join([body, *reversed(inside[i]), '</body>'])
+        inside[int(tree.segment_parent[i])].append(text)
     # Geometries collide where a bit of one is in the other's mask: segments have none.
     bodies = '\n'.join(inside[-1])
     step = min(_USUAL_STEP, hinged.largest_step)
@@ -94,7 +74,8 @@ def sdf_of_tree(simulator: SwaySimulator) -> str:
     """Return the tree of a simulator as a model of SDF 1.9, on universal joints."""
     tree = simulator.tree
     hinged = hinged_tree(simulator, has_twist_and_weight=False)
-    links = '\n'.join(_LINK.format_map(values) for values in _values(tree, hinged))
+    radius = _radii(tree)
+    links = '\n'.join(_link(tree, hinged, i, radius[i]) for i in range(tree.n_segments))
     return f"""\
 <sdf version="1.9">
 {_comment(simulator, hinged)}
@@ -119,26 +100,39 @@ def _comment(simulator: SwaySimulator, hinged: HingedTree) -> str:
     )
 
 
-def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
-    """Yield the values for the templates, of each segment."""
-    radius = 0.25 * (tree.base_diameter + tree.tip_diameter)
-    columns = {
-        'place': hinged.poses[:, :3], 'xyzw': hinged.poses[:, 3:],
-        'wxyz': hinged.poses[:, [6, 3, 4, 5]], 'centre': hinged.centre, 'mass': hinged.mass,
-        'turning': hinged.inertia[:, 0], 'across': hinged.inertia[:, 1],
-        'stiffness': hinged.stiffness[:, 0],
-        'damping': hinged.damping_time * hinged.stiffness[:, 0],
-        'length': tree.length, 'middle': 0.5 * tree.length,
-        'radius': radius, 'drag': _drag_coefficients(tree, hinged.drag_area, radius),
-    }  # fmt: skip
-    for i, parent in enumerate(tree.segment_parent.tolist()):
-        carrier = hinged.names[parent] if parent >= 0 else ''
-        yield {
-            'name': hinged.names[i],
-            'frame': carrier or '__model__',
-            'parent': carrier or 'world',
-            **{name: _text(column[i]) for name, column in columns.items()},
-        }
+def _radii(tree: Tree) -> Floats:
+    """Mean radius of each segment [m], (n,)."""
+    return 0.25 * (tree.base_diameter + tree.tip_diameter)
+
+
+def _link(tree: Tree, hinged: HingedTree, i: int, radius: float) -> str:
+    """Return a segment as SDF, and the joint that it hangs on."""
+    name = hinged.names[i]
+    parent = int(tree.segment_parent[i])
+    carrier = hinged.names[parent] if parent >= 0 else ''
+    stiffness = hinged.stiffness[i, 0]
+    place = _text(hinged.poses[i])
+    turning, across = map(_text, hinged.inertia[i])
+    shape = f"""\
+<pose>{_text(0.5 * tree.length[i])} 0 0 0 1.5707963 0</pose>
+<geometry><cylinder><radius>{_text(radius)}</radius><length>{_text(tree.length[i])}</length>
+</cylinder></geometry>"""
+    spring = f"""\
+<limit><lower>-1.57</lower><upper>1.57</upper></limit>
+<dynamics><damping>{_text(hinged.damping_time * stiffness)}</damping>
+<spring_reference>0</spring_reference>
+<spring_stiffness>{_text(stiffness)}</spring_stiffness></dynamics>"""
+    return f"""\
+<link name="{name}"><gravity>false</gravity>
+<pose relative_to="{carrier or '__model__'}" rotation_format="quat_xyzw">{place}</pose>
+<inertial><pose>{_text(hinged.centre[i])} 0 0 0 0 0</pose><mass>{_text(hinged.mass[i])}</mass>
+<inertia><ixx>{turning}</ixx><iyy>{across}</iyy><izz>{across}</izz></inertia></inertial>
+<visual name="visual">{shape}</visual>
+<collision name="collision">{shape}</collision></link>
+<joint name="{name}_joint" type="universal"><parent>{carrier or 'world'}</parent>
+<child>{name}</child>
+<axis><xyz>0 1 0</xyz>{spring}</axis>
+<axis2><xyz>0 0 1</xyz>{spring}</axis2></joint>"""
 
 
 def _joints(hinged: HingedTree, segment: int) -> str:

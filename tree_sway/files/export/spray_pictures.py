@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tree_sway.core.species import look_of, species_keys
+from tree_sway.core.species import look_of
 
 FOLDER = Path(__file__).with_name('pictures')
 
@@ -20,7 +20,7 @@ def leaf_picture(species: str) -> bytes:
     path = FOLDER / f'{species}.png'
     if not path.exists():  # a species of the user's own
         like = 'broadleaf' if look_of(species).form != 'needles' else 'conifer'
-        path = FOLDER / f'{like if like in species_keys() else "broadleaf"}.png'
+        path = FOLDER / f'{like}.png'
     return path.read_bytes()
 
 

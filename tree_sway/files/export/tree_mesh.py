@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -31,8 +32,7 @@ _FLAT, _SKYWARD = 0.5, 0.4
 """Part of a card's own normal in that by which it is lit, and of the sky, beside the crown's."""
 
 
-@dataclass(frozen=True)
-class TreeMesh:
+class TreeMesh(NamedTuple):
     """
     Triangles whose vertices move with one segment each.
 
@@ -58,6 +58,15 @@ class TreeMesh:
         return np.asarray(Rotation.from_quat(poses[self.segment, 3:]).apply(self.normals))
 
 
+def matrices_of(poses: Floats) -> Floats:
+    """Poses (n, 7) as matrices that rows of coordinates and 1 are multiplied by, (n, 4, 4)."""
+    matrices = np.zeros((len(poses), 4, 4))
+    matrices[:, :3, :3] = Rotation.from_quat(poses[:, 3:]).as_matrix().transpose(0, 2, 1)
+    matrices[:, 3, :3] = poses[:, :3]
+    matrices[:, 3, 3] = 1.0
+    return matrices
+
+
 def wood_mesh(tree: Tree) -> TreeMesh:
     """
     Return a closed cone per segment, round in its normals, of a ring of vertices at each end.
@@ -67,39 +76,28 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     """
     n = tree.n_segments
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
-    around = np.stack([np.zeros(SIDES), np.cos(angle), np.sin(angle)], axis=1)
-    base = 0.5 * tree.base_diameter
-    tip = 0.5 * tree.tip_diameter
-    radius = np.stack([base, tip], axis=1)
+    around = np.column_stack([0.0 * angle, np.cos(angle), np.sin(angle)])
+    radius = 0.5 * np.column_stack([tree.base_diameter, tree.tip_diameter])
     rings = radius[:, :, None, None] * around
     rings[:, 1, :, 0] = tree.length[:, None]
-    slope = np.arctan2(base - tip, tree.length)[:, None, None]
-    along = np.array([1.0, 0.0, 0.0])
-    outward = np.cos(slope) * around + np.sin(slope) * along
-    normals = np.stack([outward, outward], axis=1)
-    half_turns = 2.0 * np.arange(SIDES) / SIDES
+    slope = np.arctan2(radius[:, 0] - radius[:, 1], tree.length)[:, None, None]
+    outward = np.cos(slope) * around + np.sin(slope) * [1.0, 0.0, 0.0]
+    normals = np.repeat(outward, 2, axis=0)  # of both rings
     end = np.cumsum(tree.length)
     start = end - tree.length
-    start_of_branch = start[tree.branch_first[:-1]]
-    before = start_of_branch[tree.branch_of_segment]
-    way = np.stack([start - before, end - before], axis=1)
+    before = start[tree.branch_first[:-1]][tree.branch_of_segment]
+    way = np.column_stack([start - before, end - before])
     picture_height = min(BARK_HEIGHT, 0.12 * tree.height)
     texture = np.empty((n, 2, SIDES, 2))
-    texture[..., 0] = 1.0 - np.abs(1.0 - half_turns)
+    texture[..., 0] = 1.0 - np.abs(1.0 - angle / np.pi)
     texture[..., 1] = (way / picture_height)[:, :, None]
     i = np.arange(SIDES)
     j = (i + 1) % SIDES
     fan = np.arange(1, SIDES - 1)
-    of_cone = np.vstack(
-        [
-            np.stack([i, j, j + SIDES], axis=1),
-            np.stack([i, j + SIDES, i + SIDES], axis=1),
-            np.stack([0 * fan, fan + 1, fan], axis=1),
-            np.stack([0 * fan, fan, fan + 1], axis=1) + SIDES,
-        ]
-    )
-    first = 2 * SIDES * np.arange(n)
-    triangles = first[:, None, None] + of_cone
+    around_it = np.column_stack([i, j, j + SIDES, i, j + SIDES, i + SIDES]).reshape(-1, 3)
+    far_end = np.column_stack([0 * fan, fan, fan + 1]) + SIDES
+    of_cone = np.vstack([around_it, far_end[:, [0, 2, 1]] - SIDES, far_end])
+    triangles = 2 * SIDES * np.arange(n)[:, None, None] + of_cone
     return TreeMesh(
         rings.reshape(-1, 3),
         normals.reshape(-1, 3),
@@ -116,9 +114,8 @@ def leaf_mesh(leaves: LeafClusters, spray: Spray, cards: int = 2) -> TreeMesh:
     They are those of the page (``static/drawing/foliage.js``), up to as many of each cluster as
     are given. Texture coordinates run along the shoot, and across from one side to the other.
     """
-    turns = Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
     count = min(cards, len(spray.rolls))
-    parts = [_cards(leaves, spray, turns, card) for card in range(count)]
+    parts = [_cards(leaves, spray, card) for card in range(count)]
     points, normals = (np.concatenate(each) for each in zip(*parts, strict=True))
     segment = np.tile(leaves.segment.astype(np.int64), count)
     return _card_mesh(points, normals, segment)
@@ -139,9 +136,8 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     tree_of_segment = np.cumsum(is_root) - 1  # in a forest
     number = tree_of_segment[segment]
     centre = corners.mean(axis=1)
-    total = np.stack([np.bincount(number, each) for each in centre.T], axis=1)
-    count = np.maximum(np.bincount(number), 1)
-    middle = total / count[:, None]
+    total = np.column_stack([np.bincount(number, each) for each in centre.T])
+    middle = total / np.maximum(np.bincount(number), 1)[:, None]
     foot = tree.start[is_root, 2]
     away = _unit(centre - middle[number])
     away[:, 2] += _SKYWARD
@@ -161,26 +157,26 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
 
 def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
     """Return clusters of the same area in parts that are spread about the shoot of each."""
+    many = LeafClusters(*(np.repeat(each, shoots, axis=0) for each in vars(leaves).values()))
     number = np.tile(np.arange(shoots), len(leaves.segment))
-    around = 2.4 * number + np.repeat(leaves.phase, shoots)
+    around = 2.4 * number + many.phase
     # The first part stays in the middle, where the shoot is.
     far = _SPREAD * np.sqrt(number / max(1, shoots - 1))
     along = _SPREAD * (2.0 * (number + 0.5) / shoots - 1.0)
-    aside = np.stack([along, far * np.cos(around), far * np.sin(around)], axis=1)
-    size = np.repeat(leaves.size, shoots)
-    middle = np.repeat(leaves.offset, shoots, axis=0)
-    orientation = np.repeat(leaves.orientation, shoots, axis=0)
-    turns = Rotation.from_quat(orientation[:, [1, 2, 3, 0]])
+    aside = np.column_stack([along, far * np.cos(around), far * np.sin(around)])
+    turns = _turns(many)
     lean = Rotation.from_rotvec(aside[:, [0, 2, 1]] * [0.0, -1.0, 1.0])
-    quaternion = (turns * lean).as_quat()
-    return LeafClusters(
-        segment=np.repeat(leaves.segment, shoots),
-        offset=middle + turns.apply(size[:, None] * aside),
-        orientation=quaternion[:, [3, 0, 1, 2]],
-        size=size / np.sqrt(shoots),
-        frequency=np.repeat(leaves.frequency, shoots),
+    return replace(
+        many,
+        offset=many.offset + turns.apply(many.size[:, None] * aside),
+        orientation=(turns * lean).as_quat()[:, [3, 0, 1, 2]],
+        size=many.size / np.sqrt(shoots),
         phase=np.asarray(around % (2.0 * np.pi), dtype=np.float64),
     )
+
+
+def _turns(leaves: LeafClusters) -> Rotation:
+    return Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
 
 
 def _unit(vectors: Floats) -> Floats:
@@ -192,9 +188,7 @@ def _unit(vectors: Floats) -> Floats:
 def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
     """Mesh of cards from their corners and the normals there, (m, 4, 3)."""
     n = len(points)
-    two = np.array([[0, 1, 2], [0, 2, 3]])
-    first = 4 * np.arange(n)
-    triangles = first[:, None, None] + two
+    triangles = 4 * np.arange(n)[:, None, None] + [[0, 1, 2], [0, 2, 3]]
     of_picture = _CORNERS + np.array([0.0, 0.5])
     return TreeMesh(
         points.reshape(-1, 3),
@@ -205,25 +199,24 @@ def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
     )
 
 
-def _cards(
-    leaves: LeafClusters, spray: Spray, turns: Rotation, card: int
-) -> tuple[Floats, Floats]:
+def _cards(leaves: LeafClusters, spray: Spray, card: int) -> tuple[Floats, Floats]:
     """Corners and normals of one card of each cluster in the frames of segments, (m, 4, 3)."""
     u, v = _CORNERS.T
     roll = spray.rolls[card] + _ROLL * np.sin(leaves.phase)
     yaw = _YAW * np.sin(leaves.phase + 2.1 * card)
     around = Rotation.from_rotvec(yaw[:, None] * [0.0, 0.0, 1.0])
     around *= Rotation.from_rotvec(roll[:, None] * [1.0, 0.0, 0.0])
-    long = spray.length * leaves.size
-    half = 0.5 * leaves.size
-    points, normals = np.empty((2, len(long), 4, 3))
-    for k in range(4):
-        flat = long[:, None] * [u[k], v[k] * spray.width, 0.0]
-        corner = around.apply(flat)
-        corner[:, 0] -= half
-        corner[:, 2] -= _BOW * long * u[k]
-        points[:, k] = turns.apply(corner) + leaves.offset
-        normal = np.array([0.3 * u[k], 1.2 * v[k], 1.0])
-        normal /= np.linalg.norm(normal)
-        normals[:, k] = (turns * around).apply(normal)
-    return points, normals
+    turns = _turns(leaves)
+    long = spray.length * leaves.size[:, None]
+    flat = np.column_stack([u, v * spray.width, 0.0 * u])
+    corner = long[..., None] * _turned(around, flat)
+    corner[..., 0] -= 0.5 * leaves.size[:, None]
+    corner[..., 2] -= _BOW * long * u
+    points = _turned(turns, corner) + leaves.offset[:, None]
+    normal = _unit(np.column_stack([0.3 * u, 1.2 * v, np.ones(4)]))
+    return points, _turned(turns * around, normal)
+
+
+def _turned(rotations: Rotation, vectors: Floats) -> Floats:
+    """Vectors, (4, 3) or (m, 4, 3), by each of rotations, (m, 4, 3)."""
+    return np.asarray(vectors @ rotations.as_matrix().transpose(0, 2, 1))

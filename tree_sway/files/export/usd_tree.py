@@ -19,11 +19,11 @@ from scipy.spatial.transform import Rotation
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.run import SwaySimulator
-from tree_sway.core.species import look_of
 from tree_sway.core.tree import Tree
 from tree_sway.files.export.breeze import in_breeze, RATE
 from tree_sway.files.export.hinged_tree import plain_name, plain_names, poses_on_parents
-from tree_sway.files.export.tree_mesh import crown_mesh, TreeMesh, wood_mesh
+from tree_sway.files.export.tree_mesh import matrices_of
+from tree_sway.files.export.tree_parts import parts_of, TreePart
 
 _SECONDS = 10.0
 _STEADY = 8.0
@@ -34,30 +34,25 @@ _SHOOTS = 4
 
 
 def usd_of_tree(
-    simulator: SwaySimulator,
-    leaves: LeafClusters | None = None,
-    pictures: tuple[str, str] = ('bark.png', 'leaves.png'),
+    simulator: SwaySimulator, leaves: LeafClusters | None = None, pictures: str = ''
 ) -> str:
     """
     Return the tree of a simulator as ``.usda``, with or without leaves.
 
-    Pictures are the names of those of its bark and its leaves, beside the file.
+    The files of its pictures are beside it, named ``bark.png`` and ``leaves.png`` behind what
+    those of ``pictures`` begin with.
     The simulator is run, and then set back to the state that it was in.
     """
     tree = simulator.tree
     frames = in_breeze(simulator, _SECONDS, lambda: poses_on_parents(tree, simulator.place()))
     rest = tree.rest_poses
     name = plain_name(tree.name)
-    look = look_of(tree.species)
+    parts = parts_of(tree, leaves, _SHOOTS)
     joints = _strings(_paths(tree))
     turns = (_tuples(frame[:, [6, 3, 4, 5]], '%.4f') for frame in frames)
     samples = '\n'.join(f'{number}: {turn},' for number, turn in enumerate(turns))
-    materials = _material('Wood', pictures[0], look.bark, name)
-    meshes = _mesh('Wood', wood_mesh(tree), rest, look.bark, name)
-    if leaves is not None:
-        materials += '\n' + _material('Leaves', pictures[1], (1.0, 1.0, 1.0), name)
-        crown = crown_mesh(tree, leaves, look.spray, _SHOOTS)
-        meshes += '\n' + _mesh('Leaves', crown, rest, look.green, name)
+    materials = '\n'.join(_material(part, pictures, name) for part in parts)
+    meshes = '\n'.join(_mesh(part, rest, name) for part in parts)
     # A segment has a fixed place on its parent, and rotates there.
     return f"""\
 #usda 1.0
@@ -75,8 +70,8 @@ def SkelRoot "{name}" (prepend apiSchemas = ["SkelBindingAPI"])
 def Skeleton "Skeleton" (prepend apiSchemas = ["SkelBindingAPI", "DynamicWindSkeletonAPI"])
 {{
 uniform token[] joints = {joints}
-uniform matrix4d[] bindTransforms = {_matrices(rest)}
-uniform matrix4d[] restTransforms = {_matrices(poses_on_parents(tree, rest))}
+uniform matrix4d[] bindTransforms = {_tuples(matrices_of(rest), '%.7g')}
+uniform matrix4d[] restTransforms = {_tuples(matrices_of(poses_on_parents(tree, rest)), '%.7g')}
 rel skel:animationSource = </{name}/Sway>
 {_wind_attributes(simulator)}
 }}
@@ -147,54 +142,52 @@ uniform bool unreal:dynamicWind:isGroundCover = false
 uniform float unreal:dynamicWind:gustAttenuation = 0.0"""
 
 
-def _mesh(
-    kind: str, mesh: TreeMesh, poses: Floats, color: tuple[float, float, float], root: str
-) -> str:
+def _mesh(part: TreePart, poses: Floats, root: str) -> str:
     """Write a mesh whose vertices move with one joint each."""
+    mesh = part.mesh
     points = mesh.placed(poses)
     one_each = 'elementSize = 1\n    interpolation = "vertex"'
     return f"""\
-def Mesh "{kind}" (prepend apiSchemas = ["SkelBindingAPI", "MaterialBindingAPI"])
+def Mesh "{part.name}" (prepend apiSchemas = ["SkelBindingAPI", "MaterialBindingAPI"])
 {{
-rel material:binding = </{root}/Looks/{kind}>
+rel material:binding = </{root}/Looks/{part.name}>
 float3[] extent = {_tuples(np.array([points.min(axis=0), points.max(axis=0)]))}
-bool doubleSided = {int(kind == 'Leaves')}
+bool doubleSided = {int(not part.is_wood)}
 uniform token subdivisionScheme = "none"
 int[] faceVertexCounts = {[3] * len(mesh.triangles)}
 int[] faceVertexIndices = {mesh.triangles.ravel().tolist()}
 point3f[] points = {_tuples(points)}
 normal3f[] normals = {_tuples(mesh.turned(poses))} (interpolation = "vertex")
 texCoord2f[] primvars:st = {_tuples(mesh.texture)} (interpolation = "vertex")
-color3f[] primvars:displayColor = {_tuples(np.array([color]))}
+color3f[] primvars:displayColor = {_tuples(np.array([part.color]))}
 int[] primvars:skel:jointIndices = {mesh.segment.tolist()} ({one_each})
 float[] primvars:skel:jointWeights = {[1] * len(mesh.segment)} ({one_each})
 rel skel:skeleton = </{root}/Skeleton>
 }}"""
 
 
-def _material(kind: str, picture: str, color: tuple[float, float, float], root: str) -> str:
+def _material(part: TreePart, pictures: str, root: str) -> str:
     """Write a surface with a picture times a colour, cut out by its alpha for leaves."""
-    here = f'/{root}/Looks/{kind}'
-    linear = ', '.join(f'{c**2.2:.3f}' for c in color)
+    here = f'/{root}/Looks/{part.name}'
     opacity = f"""
 float inputs:opacity.connect = <{here}/Picture.outputs:a>
 float inputs:opacityThreshold = 0.2"""
     return f"""\
-def Material "{kind}"
+def Material "{part.name}"
 {{
 token outputs:surface.connect = <{here}/Surface.outputs:surface>
 def Shader "Surface"
 {{
 uniform token info:id = "UsdPreviewSurface"
-color3f inputs:diffuseColor.connect = <{here}/Picture.outputs:rgb>{opacity * (kind == 'Leaves')}
+color3f inputs:diffuseColor.connect = <{here}/Picture.outputs:rgb>{opacity * (not part.is_wood)}
 float inputs:roughness = 1
 token outputs:surface
 }}
 def Shader "Picture"
 {{
 uniform token info:id = "UsdUVTexture"
-asset inputs:file = @{picture}@
-float4 inputs:scale = ({linear}, 1)
+asset inputs:file = @{pictures}{part.material}.png@
+float4 inputs:scale = {(*part.linear_tint, 1)}
 float2 inputs:st.connect = <{here}/Place.outputs:result>
 token inputs:wrapS = "repeat"
 token inputs:wrapT = "repeat"
@@ -210,18 +203,11 @@ float2 outputs:result
 }}"""
 
 
-def _matrices(poses: Floats) -> str:
-    """Poses (n, 7) as matrices that rows are multiplied by."""
-    matrices = np.zeros((len(poses), 4, 4))
-    matrices[:, :3, :3] = Rotation.from_quat(poses[:, 3:]).as_matrix().transpose(0, 2, 1)
-    matrices[:, 3] = np.column_stack([poses[:, :3], np.ones(len(poses))])
-    row = '(%.7g, %.7g, %.7g, %.7g)'
-    form = f'({row}, {row}, {row}, {row})'
-    return f'[{", ".join([form] * len(poses))}]' % tuple(matrices.ravel().tolist())
-
-
 def _tuples(values: Floats, number: str = '%.5g') -> str:
-    form = f'({", ".join([number] * values.shape[1])})'
+    """Write an array of tuples of numbers, or of tuples of such tuples."""
+    form = number
+    for size in values.shape[:0:-1]:
+        form = f'({", ".join([form] * size)})'
     return f'[{", ".join([form] * len(values))}]' % tuple(values.ravel().tolist())
 
 

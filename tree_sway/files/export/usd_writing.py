@@ -37,7 +37,7 @@ def write_usd(
     pictures = {f'{stem}_bark.png': bark_picture(look_of(species).bark_pattern)}
     if leaves is not None:
         pictures[f'{stem}_leaves.png'] = leaf_picture(species)
-    text = usd_of_tree(simulator, leaves, (f'{stem}_bark.png', f'{stem}_leaves.png'))
+    text = usd_of_tree(simulator, leaves, f'{stem}_')
     if path.suffix.lower() == '.usdz':
         with whole_file(path) as partial:
             partial.write_bytes(_packed({**_layer(stem, text), **pictures}))

@@ -85,14 +85,12 @@ def _branch(tree: Tree, branch: int) -> dict[str, Any]:
     if its_parent >= 0:
         content['parent'] = tree.branch_names[its_parent]
         content['segment'] = int(tree.segment_parent[part.start] - tree.branch_first[its_parent])
-    start = tree.start[part]
-    end = tree.end[part]
-    base = tree.base_diameter[part]
-    tip = tree.tip_diameter[part]
-    if np.array_equal(start[1:], end[:-1]) and np.array_equal(base[1:], tip[:-1]):
-        nodes = np.column_stack([np.vstack([start, end[-1:]]), np.append(base, tip[-1])])
-        return {**content, 'nodes': nodes.tolist()}
-    diameter = np.stack([base, tip], axis=1)
-    rows = zip(start.tolist(), end.tolist(), diameter.tolist(), strict=True)
-    segments = [{'start': a, 'end': b, 'diameter': d} for a, b, d in rows]
+    bases = np.column_stack([tree.start[part], tree.base_diameter[part]])
+    tips = np.column_stack([tree.end[part], tree.tip_diameter[part]])
+    if np.array_equal(bases[1:], tips[:-1]):
+        return {**content, 'nodes': np.vstack([bases, tips[-1:]]).tolist()}
+    segments = [
+        {'start': base[:3], 'end': tip[:3], 'diameter': [base[3], tip[3]]}
+        for base, tip in zip(bases.tolist(), tips.tolist(), strict=True)
+    ]
     return {**content, 'segments': segments}

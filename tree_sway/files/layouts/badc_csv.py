@@ -12,11 +12,11 @@ from __future__ import annotations
 from dataclasses import replace
 import re
 
-from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.layout import begins, Layout
 from tree_sway.files.layouts.plain import units_above
 from tree_sway.files.table_file import parse_table, TextTable
 
-_FIRST = re.compile(' *conventions *, *g *, *badc-csv', re.IGNORECASE)
+_FIRST = ' *conventions *, *g *, *badc-csv'
 _BEGIN = 'data'
 _END = 'end data'
 
@@ -30,4 +30,4 @@ def _read(lines: list[str], source: str) -> TextTable:
     return replace(table, units=units_above(table, lines[:begin]))
 
 
-BADC_CSV = Layout('badc-csv', lambda lines: _FIRST.match(lines[0]) is not None, _read)
+BADC_CSV = Layout(begins(_FIRST, re.IGNORECASE), _read)

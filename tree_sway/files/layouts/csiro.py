@@ -28,4 +28,4 @@ def _read(lines: list[str], source: str) -> TextTable:
     return parse_columns(lines, source, _columns(lines))
 
 
-CSIRO = Layout('csiro', lambda lines: bool(_columns(lines)), _read)
+CSIRO = Layout(lambda lines: bool(_columns(lines)), _read)

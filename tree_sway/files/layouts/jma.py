@@ -15,8 +15,8 @@ from itertools import zip_longest
 import re
 
 from tree_sway.errors import FormatError
-from tree_sway.files.cell_table import cell_at, numbered, table_of_lines
-from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.layouts.layout import begins, Layout
 from tree_sway.files.table_file import TextTable
 
 _FIRST = 'ダウンロードした時刻'
@@ -46,14 +46,13 @@ def _read(lines: list[str], source: str) -> TextTable:
     titles = [' '.join(filter(None, each)) for each in zip_longest(*head[_ELEMENTS:])]
     mean = next((each for each in _MEANS if each in titles), '')
     wanted = (titles[0], mean, f'{mean} {_DIRECTION}', _GUST, f'{mean} {_QUALITY}')
-    places = [titles.index(each) if each in titles else None for each in wanted]
-    rows = []
-    for number, line in numbered(lines, first):
-        cells = line.split(',')
+    rows = {}
+    for number, line in enumerate(lines, start=1):
         if _ROW.match(line):
-            time, speed, *others, quality = (cell_at(cells, place) for place in places)
-            rows.append((number, [time, '' if quality in _DOUBTFUL else speed, *others]))
-    return table_of_lines(_NAMES, rows, source, _UNITS)
+            cells = dict(zip(titles, map(str.strip, line.split(',')), strict=False))
+            time, speed, *others, quality = (cells.get(title, '') for title in wanted)
+            rows[number] = [time, '' if quality in _DOUBTFUL else speed, *others]
+    return table_of_cells(_NAMES, rows.values(), source, [*rows], _UNITS)
 
 
-JMA = Layout('jma', lambda lines: lines[0].startswith(_FIRST), _read)
+JMA = Layout(begins(_FIRST), _read)

@@ -18,7 +18,7 @@ from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import rank_of, unit_known
+from tree_sway.files.column_names import is_named, unit_known
 from tree_sway.files.json_values import (
     cell_of,
     DEEPEST,
@@ -29,9 +29,9 @@ from tree_sway.files.json_values import (
     text_of,
     unit_beside,
 )
-from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.layout import begins, Layout
 from tree_sway.files.layouts.long import is_wind, unit_for, Value, wide_table, widened
-from tree_sway.files.layouts.spread_columns import spread_table
+from tree_sway.files.layouts.spread_columns import spread_rows
 from tree_sway.files.layouts.station_messages import (
     SIGNALK_PAIRS,
     signalk_values,
@@ -41,7 +41,7 @@ from tree_sway.files.layouts.station_messages import (
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import finite
 
-_BEGINS = re.compile(r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))')
+_BEGINS = r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))'
 _CLOCK = re.compile(r'\d{9}|\d{4}-\d\d-\d\d')
 """Begin of a time since 1970, or of a date."""
 _UNIT = re.compile('unit|uom', re.IGNORECASE)
@@ -138,8 +138,8 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             beside = object_of(node.get('units')) or _said_units(node) or units
             own_units = units | object_of(node.get(f'{name}_units', beside))
             yield from _tables(each, own_units, source, depth + 1)
-        if columns := spread_table(node, units, source):  # after those of a part of it
-            yield columns
+        if columns := spread_rows(node, own):  # after those of a part of it
+            yield _records(columns, units | own, source)
 
 
 def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
@@ -149,14 +149,14 @@ def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
     So are those of Movesense, within ``acc`` or ``gyro``; nothing of any other list, as one whose
     messages have values beside the time and their lists.
     """
-    bodies = []
-    for message in map(object_of, messages):
-        inner = next(iter(message.values()), None)
-        bodies.append(object_of(inner) or message)
+    bodies = [
+        object_of(next(iter(message.values()), None)) or message
+        for message in map(object_of, messages)
+    ]
     n_values = [sum(not list_of(each) for each in body.values()) for body in bodies]
     if len(bodies) < 2 or {*n_values} != {1}:
         return
-    clock = next((name for name in bodies[0] if rank_of(name, 'time') is not None), '')
+    clock = next((name for name in bodies[0] if is_named(name, 'time')), '')
     batch = next((name for name, each in bodies[0].items() if list_of(each)), '')
     told = (finite(cell_of(body.get(clock))) for body in bodies)
     starts = [start for start in told if start is not None]
@@ -210,19 +210,12 @@ def _words(value: Any) -> list[Any]:
 
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
-    system = units.get('*')
-    records = []
-    empty: Cells = {}
-    for each in map(_by_name, node):
-        record = dict(flat(each))
-        if system:
-            record['units'] = system
-        records.append(record)
-        empty |= dict.fromkeys(record, '')
-    names = list(empty)
-    rows = [list((empty | record).values()) for record in records]
+    system = {'units': text_of(units['*'])} if units.get('*') else {}
+    records = [dict(flat(each)) | system for each in map(_by_name, node)]
+    names = list(dict.fromkeys(name for record in records for name in record))
+    rows = [[record.get(name, '') for name in names] for record in records]
     beside = [unit_beside(records[0], name) or unit_for(name, units) for name in names]
-    titles = [units.get(f'#{name}', name) for name in names]
+    titles = [text_of(units.get(f'#{name}', name)) for name in names]
     return widened(table_of_cells(titles, rows, source, units=beside))
 
 
@@ -279,7 +272,7 @@ def _pairs(listed: Any) -> list[tuple[str, Any]]:
     found = []
     for each in cells:
         own = dict(object_of(each))
-        values = [own.pop(name) for name in [*own] if rank_of(name, 'value') is not None]
+        values = [own.pop(name) for name in [*own] if is_named(name, 'value')]
         parts = [*own.values(), *values]
         if isinstance(each, list | tuple) and len(each) == 2:
             parts = sorted(each, key=lambda part: not _CLOCK.match(cell_of(part)))
@@ -302,4 +295,4 @@ def _states(node: list[Any]) -> Iterator[dict[str, Any]]:
                 yield known
 
 
-JSON = Layout('json', lambda lines: _BEGINS.match('\n'.join(lines)) is not None, _read_json_table)
+JSON = Layout(begins(_BEGINS), _read_json_table)

@@ -5,19 +5,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+import re
+from typing import NamedTuple
 
 from tree_sway.files.table_file import TextTable
 
 
-@dataclass(frozen=True, slots=True)
-class Layout:
+class Layout(NamedTuple):
     """
     A layout of a table of wind.
 
     ``recognise`` gets the first lines of a file, ``read`` all of them and the name of the file.
     """
 
-    name: str
     recognise: Callable[[Sequence[str]], bool]
     read: Callable[[list[str], str], TextTable]
+
+
+def begins(form: str, flags: int = 0) -> Callable[[Sequence[str]], bool]:
+    """Recognise a layout by a regular expression of its first lines."""
+    compiled = re.compile(form, flags)
+    return lambda lines: compiled.match('\n'.join(lines)) is not None

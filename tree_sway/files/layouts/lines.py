@@ -16,71 +16,70 @@ from itertools import islice
 import re
 from typing import Any
 
-from tree_sway.files.cell_table import numbered, table_of_lines
+from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.column_names import unit_known
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import TextTable
 from tree_sway.tables import table_beside
 
-_LINES = {each['name']: each for each in table_beside(__file__, 'lines.csv')}
+_LINES = {
+    each['name']: {
+        **each,
+        'line': re.compile(each['line'], re.ASCII),
+        'units': dict(unit.split('=') for unit in each['units'].split(';')),
+    }
+    for each in table_beside(__file__, 'lines.csv')
+}
 _SPEEDS = ('wind_speed', 'gust')
 
 
 def form_of(name: str) -> re.Pattern[str]:
     """Return the form of the lines of a name in `lines.csv`."""
-    return re.compile(_LINES[name]['line'], re.ASCII)
+    form: re.Pattern[str] = _LINES[name]['line']
+    return form
 
 
 def _rows(lines: Sequence[str], known: dict[str, Any]) -> Iterator[tuple[int, str]]:
     """Yield the lines that have a row, each after its number."""
     others = re.compile(f'(?:{known["others"] or ""})?', re.ASCII)  # or a blank line
-    for number, line in numbered(lines, known['skipped']):
+    for number, line in enumerate(lines[known['skipped'] :], start=known['skipped'] + 1):
         text = line.strip()
         if others.fullmatch(text) is None:
             yield number, text
 
 
-def _units(known: dict[str, Any]) -> dict[str, str]:
-    return dict(each.split('=') for each in known['units'].split(';'))
-
-
-def _has_form(lines: Sequence[str], known: dict[str, Any], form: re.Pattern[str]) -> bool:
-    units = _units(known)
-    found = [form.fullmatch(text) for _, text in islice(_rows(lines, known), 2)]
+def _has_form(lines: Sequence[str], known: dict[str, Any]) -> bool:
+    units = known['units']
+    found = [known['line'].fullmatch(text) for _, text in islice(_rows(lines, known), 2)]
     said = [each.groupdict().get('unit', 'm/s') for each in found if each]
     return 0 < len(found) == len(said) and all(
         unit_known('speed', units.get(unit, unit)) for unit in said
     )
 
 
-def _read(
-    lines: list[str], source: str, known: dict[str, Any], form: re.Pattern[str]
-) -> TextTable:
-    names = [name for name in form.groupindex if name != 'unit']
+def _read(lines: list[str], source: str, known: dict[str, Any]) -> TextTable:
+    names = [name for name in known['line'].groupindex if name != 'unit']
     missing = re.compile(known['missing'] or '')
     unit = ''
-    rows = []
+    rows = {}
     for number, text in _rows(lines, known):
-        found = form.fullmatch(text)
+        found = known['line'].fullmatch(text)
         cells = {} if found is None else found.groupdict('')
         unit = unit or cells.get('unit', '')
         if cells.get('unit', '') != unit:
             cells = {}
-        cells = dict.fromkeys(names, '') | cells
-        row = ['' if missing.fullmatch(cells[name]) else cells[name] for name in names]
-        rows.append((number, ['', *(cell.replace(',', '.') for cell in row)]))
-    units = _units(known)
+        row = (cells.get(name, '') for name in names)
+        plain = ('' if missing.fullmatch(cell) else cell.replace(',', '.') for cell in row)
+        rows[number] = ['', *plain]
+    units = known['units']
     if unit:
-        units |= dict.fromkeys(_SPEEDS, units.get(unit, unit))
+        units = units | dict.fromkeys(_SPEEDS, units.get(unit, unit))
     columns = [known['name'], *names]
-    return table_of_lines(columns, rows, source, [units.get(name, '') for name in columns])
+    told = [units.get(name, '') for name in columns]
+    return table_of_cells(columns, rows.values(), source, [*rows], told)
 
 
 LINES = tuple(
-    Layout(
-        name,
-        partial(_has_form, known=known, form=form_of(name)),
-        partial(_read, known=known, form=form_of(name)),
-    )
-    for name, known in _LINES.items()
+    Layout(partial(_has_form, known=known), partial(_read, known=known))
+    for known in _LINES.values()
 )

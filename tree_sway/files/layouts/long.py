@@ -14,12 +14,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import chain
 import re
+from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import folded, rank_of, SENDERS
+from tree_sway.files.column_names import folded, is_named, SENDERS
+from tree_sway.files.json_values import text_of
 from tree_sway.files.table_file import TextTable
 
 _STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
@@ -40,19 +41,19 @@ def wide_table(
     """
     by_time: dict[str, dict[str, str]] = {}
     lines: dict[str, int] = {}
+    newest: dict[str, str] = {}
     for line, time, name, value in values:
         by_time.setdefault(time, {})[name] = value
         lines.setdefault(time, line)
-    names = list(dict.fromkeys(chain.from_iterable(by_time.values())))
-    newest = dict.fromkeys(names, '')
+        newest[name] = ''
+    names = list(newest)
     rows = []
     for time in sorted(by_time):
         newest |= by_time[time]
         rows.append([time, *newest.values()])
     # sensor.garden_wind_speed is wind_speed, if no other sensor is called so.
     short = [_STATION.sub('', name, count=1) for name in names]
-    is_clear = len(set(short)) == len(short)
-    columns = short if is_clear else names
+    columns = short if len({*short}) == len(short) else names
     numbers = [lines[time] for time in sorted(by_time)]
     units = [(unit_of or {}).get(name, '') for name in names]
     return table_of_cells([clock, *columns], rows, source, numbers, ['', *units])
@@ -63,7 +64,7 @@ def widened(table: TextTable) -> TextTable:
     last = tuple(name.rpartition('.')[2] for name in table.columns)
     short = replace(table, columns=last)
     wanted = [short.find_all(each)[:1] for each in ('time', 'value')]
-    first = range(min(len(table.texts), _LOOKED_AT))
+    first = table.rows[:_LOOKED_AT]
     columns = range(len(table.columns)) if all(wanted) else ()
     known = [(sum(map(is_wind, {*table.cells(each, first)})), each) for each in columns]
     most, name = max(known, default=(0, 0), key=lambda each: each[0])
@@ -78,14 +79,14 @@ def widened(table: TextTable) -> TextTable:
 def is_wind(name: str) -> bool:
     """Whether a text is the name of a quantity of the wind, maybe behind that of a station."""
     plain = _STATION.sub('', name, count=1)
-    return any(rank_of(plain, each) is not None for each in WIND)
+    return is_named(plain, *WIND)
 
 
-def unit_for(name: str, units: Mapping[str, str]) -> str:
+def unit_for(name: str, units: Mapping[str, Any]) -> str:
     """Return the unit of a name, or that of the quantity of the wind which it names."""
-    quantities = [each for each in WIND if rank_of(name, each) is not None][:1]
-    same = (units[each] for each in units for of in quantities if rank_of(each, of) is not None)
-    return units.get(name) or next(same, '')
+    quantities = [each for each in WIND if is_named(name, each)][:1]
+    same = (units[each] for each in units if is_named(each, *quantities))
+    return text_of(units.get(name)) or text_of(next(same, ''))
 
 
 def _values(table: TextTable, wanted: Sequence[int], units: dict[str, str]) -> Iterator[Value]:

@@ -12,13 +12,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 import re
 
-from tree_sway.files.cell_table import table_of_lines
+from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.table_file import SEPARATORS, TextTable
 
 _CLOCK = 'monitor_time'
-_STAMP = re.compile(r'(\d\d:\d\d:\d\d(?:\.\d+)?) -> ?(.*)')
+_LINE = re.compile(r'(?:(\d\d:\d\d:\d\d(?:\.\d+)?) -> ?)?(.*)')
+"""Clock, if there is one, and text of a line."""
 _PAIR = re.compile(
     r'(?<!\w)([A-Za-z][\w ]{0,60}?)\s{0,9}[:=]\s{0,9}'
     r'([-+]?[\d.]{1,40}(?:[eE][-+]?\d{1,3})?|[NESW]{1,3}\b)'
@@ -39,14 +40,12 @@ def _are_pairs(line: str) -> bool:
 
 def _is_monitored(lines: Sequence[str]) -> bool:
     first = [line for line in lines[:3] if line.strip()]
-    are_stamped = all(map(_STAMP.fullmatch, first))
+    are_stamped = all(_LINE.findall(line)[0][0] for line in first)
     return len(first) > 1 and (are_stamped or all(map(_are_pairs, first)))
 
 
 def _read(lines: list[str], source: str) -> TextTable:
-    found = [_STAMP.fullmatch(line) for line in lines]
-    clocks = [stamp[1] if stamp else '' for stamp in found]
-    texts = [stamp[2] if stamp else line for stamp, line in zip(found, lines, strict=True)]
+    clocks, texts = map(list, zip(*(_LINE.findall(line)[0] for line in lines), strict=True))
     filled = [text for text in texts if text.strip()]
     if not _are_pairs(filled[-1]):
         separator = max(SEPARATORS, key=filled[-1].count)
@@ -57,14 +56,13 @@ def _read(lines: list[str], source: str) -> TextTable:
         rows = [f'{clock}{separator}{text}' if clock else text for clock, text in pairs]
         return PLAIN.read(rows, source)
     names = [*pairs_of(filled[-1])]
-    values = [pairs_of(text) for text in texts]
-    numbered = []
-    for number, each in enumerate(values, start=1):
-        if each:
-            cells = [each.get(name, '') for name in names]
-            numbered.append((number, [clocks[number - 1], *cells]))
+    cells = {
+        number: [clock, *(each.get(name, '') for name in names)]
+        for number, (clock, each) in enumerate(zip(clocks, map(pairs_of, texts), strict=True), 1)
+        if each
+    }
     clock = _CLOCK if any(clocks) else ''
-    return table_of_lines([clock, *names], numbered, source)
+    return table_of_cells([clock, *names], cells.values(), source, [*cells])
 
 
-MONITOR = Layout('serial monitor', _is_monitored, _read)
+MONITOR = Layout(_is_monitored, _read)

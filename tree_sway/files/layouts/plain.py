@@ -16,9 +16,10 @@ import re
 
 from tree_sway.files.column_names import (
     COLUMNS,
+    HEADER,
+    is_named,
     motion_of,
     name_and_unit,
-    rank_of,
     unit_known,
 )
 from tree_sway.files.layouts.layout import Layout
@@ -36,21 +37,6 @@ _PARTS = ('yyyymmdd', 'yyyy', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
 _KINDS = ('speed', 'acceleration', 'rate')
 """Kinds of units of which a row of units has at least one."""
 _SIZES = ('height', 'diameter', 'girth')
-_KNOWN = (
-    *(
-        'time',
-        'wind_speed',
-        'wind_direction',
-        'wind_x',
-        'wind_y',
-        'gust',
-        'value',
-        'species',
-        'genus',
-    ),
-    *('x', 'y', 'latitude', 'longitude', 'place', *_SIZES),
-)
-"""Quantities whose names tell the header."""
 
 
 def header_line(lines: Sequence[str]) -> int | None:
@@ -62,8 +48,7 @@ def header_line(lines: Sequence[str]) -> int | None:
     plain: dict[int, int] = {}
     hashed: dict[int, int] = {}
     for number, line in enumerate(lines[:_HEAD]):
-        cells = _cells(line)
-        filled = [cell for cell in cells if cell]
+        filled = list(filter(None, _cells(line)))
         n_numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
         is_comment = _is_comment(line)
         if is_comment:
@@ -96,13 +81,13 @@ def is_known(cell: str) -> bool:
         return cell.lower() in _PARTS
     motion = motion_of(cell)
     is_axis = motion is not None and motion[2] != ''
-    return is_axis or any(rank_of(cell, each) is not None for each in _KNOWN)
+    return is_axis or is_named(cell, *HEADER)
 
 
 def _is_table(lines: Sequence[str]) -> bool:
     found = header_line(lines)
     cells = [] if found is None else _cells(_uncommented(lines[found]))
-    return any(rank_of(cell, 'time') is not None or cell.lower() in _PARTS for cell in cells)
+    return any(is_named(cell, 'time') or cell.lower() in _PARTS for cell in cells)
 
 
 def _read(lines: list[str], source: str) -> TextTable:
@@ -147,13 +132,11 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
         return replace(table, units=units_above(table, table.above))
     below = len(words) if rows[0] in words else 0
     units = [
-        '' if rank_of(name, 'time') is not None and not unit_known('time', cell) else cell
+        '' if is_named(name, 'time') and not unit_known('time', cell) else cell
         for name, cell in zip(table.columns, rows[0], strict=False)
     ]
     return replace(
-        table,
-        numbers=table.numbers[below:],
-        texts=table.texts[below:],
+        table.part(table.rows[below:]),
         units=tuple(units),
         unit_line=table.numbers[words.index(rows[0])] if below else table.header_line,
     )
@@ -164,7 +147,7 @@ def units_above(table: TextTable, above: Sequence[str]) -> tuple[str, ...]:
     said = [[part.strip('#%/" ') for part in _BETWEEN.split(line)] for line in above]
 
     def unit_of(column: str) -> str:
-        kinds = [COLUMNS[each]['unit'] for each in _KNOWN if rank_of(column, each) is not None]
+        kinds = [COLUMNS[each]['unit'] for each in HEADER if is_named(column, each)]
         parts = (part for line in said if column in line for part in line if part != column)
         return next((part for part in parts if any(unit_known(k, part) for k in kinds)), '')
 
@@ -177,7 +160,7 @@ def _are_units(table: TextTable, cells: Sequence[str]) -> bool:
         return True
     pairs = zip(table.columns, cells, strict=False)
     return any(
-        unit_known(COLUMNS[size]['unit'], cell) and rank_of(name, size) is not None
+        unit_known(COLUMNS[size]['unit'], cell) and is_named(name, size)
         for name, cell in pairs
         for size in _SIZES
     )
@@ -191,4 +174,4 @@ def _unit_below(cell: str) -> str:
     return unit if any(unit_known(kind, unit) for kind in ('angle', *_KINDS)) else ''
 
 
-PLAIN = Layout('table', _is_table, _read)
+PLAIN = Layout(_is_table, _read)

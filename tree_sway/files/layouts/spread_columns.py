@@ -9,37 +9,29 @@ text, or has it as the ``symbol``, maybe in another part of the document.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
-from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import is_named
 from tree_sway.files.json_values import DEEPEST, list_of, object_of, text_of
-from tree_sway.files.layouts.long import unit_for
-from tree_sway.files.table_file import TextTable
 
 _OF_QUANTITY = ('data', 'values')
 
 
-def spread_table(node: Any, units: Mapping[str, Any], source: str) -> TextTable | None:
+def spread_rows(node: Any, units: dict[str, str]) -> list[dict[str, Any]]:
     """
-    Return the columns as long as that of the time, wherever they are in a node; None without two.
+    Return records of the columns as long as that of the time, wherever they are in a node.
 
-    ``units`` are those that a part of the document beside it tells.
+    There are none without two such columns. Their units are noted.
     """
-    own: dict[str, str] = {}
-    columns = dict(_lists(node, '', own))
-    clock = next((name for name in columns if rank_of(name, 'time') is not None), None)
+    columns = dict(_lists(node, '', units))
+    clock = next((name for name in columns if is_named(name, 'time')), None)
     if clock is None:
-        return None
-    names = [name for name, values in columns.items() if len(values) == len(columns[clock])]
-    if len(names) < 2:
-        return None
-    rows = zip(*(map(text_of, columns[name]) for name in names), strict=True)
-    told = {name: unit for name, unit in units.items() if isinstance(unit, str)} | own
-    return table_of_cells(
-        names, list(rows), source, units=[unit_for(name, told) for name in names]
-    )
+        return []
+    size = len(columns[clock])
+    alike = {name: values for name, values in columns.items() if len(values) == size}
+    rows = zip(*alike.values(), strict=True) if len(alike) > 1 else ()
+    return [dict(zip(alike, row, strict=True)) for row in rows]
 
 
 def _lists(

@@ -12,11 +12,11 @@ from __future__ import annotations
 from itertools import zip_longest
 import re
 
-from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.layout import begins, Layout
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.table_file import TextTable
 
-_NAMES = re.compile(r'.*Wind.*\n\s*(?i:Date\s+Time\b.*\bSpeed\s+Dir\b).*\n')
+_NAMES = r'.*Wind.*\n\s*(?i:Date\s+Time\b.*\bSpeed\s+Dir\b).*\n'
 _WORD = re.compile(r'\S+')
 
 
@@ -33,15 +33,10 @@ def _names(above: str, below: str) -> list[str]:
         return [' '.join(' '.join(pair).split()) for pair in pairs]
     names = []
     for word in _WORD.finditer(below):
-        name = word[0]
-        for over in _WORD.finditer(above):
-            if over.start() < word.end() and over.end() > word.start():
-                name = f'{over[0]} {name}'
-                break
-        names.append(name)
+        begin, end = word.span()
+        over = (o[0] for o in _WORD.finditer(above) if o.start() < end and o.end() > begin)
+        names.append(f'{next(over, "")} {word[0]}'.strip())
     return names
 
 
-WEATHERLINK_TEXT = Layout(
-    'weatherlink text', lambda lines: _NAMES.match('\n'.join(lines[:3])) is not None, _read
-)
+WEATHERLINK_TEXT = Layout(begins(_NAMES), _read)

@@ -83,8 +83,8 @@ def write_native_model(path: str | Path, model: SwayModel) -> None:
 def _plain(value: Any) -> Any:
     """Return a dataclass as numbers and texts for JSON, which has no infinity, without arrays."""
     if is_dataclass(value):
-        own = {each.name: getattr(value, each.name) for each in fields(value)}
-        return {name: _plain(each) for name, each in own.items() if name not in LEAVES}
+        names = (each.name for each in fields(value) if each.name not in LEAVES)
+        return {name: _plain(getattr(value, name)) for name in names}
     if isinstance(value, tuple):
         return [_plain(each) for each in value]
     if isinstance(value, float) and not math.isfinite(value):

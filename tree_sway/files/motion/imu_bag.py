@@ -43,9 +43,9 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
 
     """
     bag = read_bag(path, (IMU,))
-    chosen = bag.chosen(topic, (IMU,), 'motion', path, f'{path.name}?topic=')
-    recorded = [stamp for stamp, _ in bag.messages[chosen]]
-    rows = [numbers_of(data, _NUMBERS) for _, data in bag.messages[chosen]]
+    chosen = bag.chosen(topic, (IMU,), 'motion', f'{path.name}?topic=')
+    messages = bag.messages[chosen]
+    rows = [numbers_of(data, _NUMBERS) for _, data in messages]
     frames = {row.frame for row in rows if row}
     n_short = rows.count(None)
     if n_short == len(rows):
@@ -56,13 +56,13 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
             f'{chosen} has messages of {len(frames)} frames: {", ".join(sorted(frames)[:4])}',
             cure='record each sensor on a topic of its own',
         )
-    stamps = [(row and row.stamp) or stamp for row, stamp in zip(rows, recorded, strict=True)]
+    stamps = [(row and row.stamp) or stamp for row, (stamp, _) in zip(rows, messages, strict=True)]
     time = np.array([(stamp - stamps[0]) * 1e-9 for stamp in stamps])
     values = np.array([row.values if row else [np.nan] * _NUMBERS for row in rows])
-    parts = []
-    for first, size in ((25, 3), (13, 3), (0, 4)):
-        is_absent = float(values[0, first + size]) == -1.0
-        parts.append(None if is_absent else values[:, first : first + size])
+    acceleration, rate, orientation = (
+        None if values[0, end] == -1.0 else values[:, begin:end]
+        for begin, end in ((25, 28), (13, 16), (0, 4))
+    )
     n_back = int(np.count_nonzero(np.diff(time) <= 0.0))
     if n_back > _MOST_BACK * len(rows):
         raise FormatError(
@@ -71,4 +71,4 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
         )
     counted = ((n_short, 'are too short'), (n_back, 'are not later than the one before'))
     notes = (f'topic {chosen}, {IMU}', *(f'{n} messages {what}' for n, what in counted if n))
-    return MotionRecord(time, parts[0], parts[1], parts[2], str(path), stamps[0] * 1e-9, notes)
+    return MotionRecord(time, acceleration, rate, orientation, str(path), stamps[0] * 1e-9, notes)

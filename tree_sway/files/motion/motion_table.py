@@ -20,7 +20,6 @@ import re
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.rotation import quaternion_rotated
@@ -108,20 +107,12 @@ def _by_sensor(table: TextTable) -> list[TextTable]:
     moves = {quantity: words for quantity, words in FILES_OF.items() if quantity}
     for index, column in enumerate(table.columns):
         rows: dict[str, list[int]] = {}
-        names = table.cells(index, range(len(table.texts))) if folded(column) in SENDERS else ()
+        names = table.cells(index, table.rows) if folded(column) in SENDERS else ()
         for row, name in enumerate(names):
             rows.setdefault(name, []).append(row)
         told = [each for each in rows if any(w.search(folded(each)) for w in moves.values())]
         if len(told) > 1 and min(len(rows[each]) for each in told) > 1:
-            return [
-                replace(
-                    table,
-                    numbers=[table.numbers[row] for row in of_one],
-                    texts=[table.texts[row] for row in of_one],
-                    source=f'{table.source}/{name}',
-                )
-                for name, of_one in ((each, rows[each]) for each in sorted(told))
-            ]
+            return [table.part(rows[each], f'/{each}') for each in sorted(told)]
     return [table]
 
 
@@ -130,10 +121,8 @@ def _record(table: TextTable, about: Sequence[str]) -> MotionRecord:
     source = table.source
     table.refuse_several()
     clock = time_columns(table)
-    stem = folded(Path(source).stem)
-    picked = _axes(table, stem)
-    rows = list(range(len(table.texts)))
-    times = None if clock is None else row_times(table, *clock, rows)
+    picked = _axes(table, folded(Path(source).stem))
+    times = None if clock is None else row_times(table, *clock, table.rows)
     if times is None or not np.isfinite(times.seconds).any():
         times = counted_times(table) or times
     if times is None or not picked:
@@ -148,10 +137,9 @@ def _record(table: TextTable, about: Sequence[str]) -> MotionRecord:
     notes = [f'{Path(source).name}: read {read}', times.note]
     maker = maker_of(table)
     for quantity, columns in picked.items():
-        factors = [table.factor_of(each, quantity) for each in columns]
+        factors = np.array([table.factor_of(each, quantity) for each in columns])
         if quantity != 'orientation' and not table.unit_of(columns[0], quantity):
-            factor, note = _without_unit(table, maker, columns[0], quantity, values[quantity])
-            factors = [factor] * len(columns)
+            factors[:], note = _without_unit(table, maker, columns[0], quantity, values[quantity])
             notes.append(note)
         values[quantity] = values[quantity] * factors
     if 'acceleration' in values and (maker.get('sign') == -1 or _is_of_apple(about)):
@@ -201,7 +189,7 @@ def _joined(records: Sequence[MotionRecord], source: str) -> MotionRecord:
                 are_dated = first.epoch is not None and each.epoch is not None
                 clock = each.times_after(first.epoch) if are_dated else each.time
                 axes = [np.interp(first.time, clock, axis, np.nan, np.nan) for axis in values.T]
-                found[quantity] = np.stack(axes, axis=1)
+                found[quantity] = np.column_stack(axes)
                 notes += each.notes
     return replace(first, source=source, notes=tuple(notes), **found)
 
@@ -307,16 +295,17 @@ def _checked_times(table: TextTable, times: Times, values: Floats, column: int |
         )
     rows = np.flatnonzero(is_time)
     steps = np.diff(seconds[rows])
-    if _are_most(steps < 0.0, 0.1):
+    n_back = np.count_nonzero(steps < 0.0)
+    if n_back > 0.1 * len(steps):
         raise table.error(
-            f'time goes back in {np.count_nonzero(steps < 0.0)} of {len(rows)} rows',
+            f'time goes back in {n_back} of {len(rows)} rows',
             cure='put the rows in the order of time',
         )
     changes = (np.diff(values[rows], axis=0) != 0.0).any(axis=1)
-    stands = (steps == 0.0) & changes
-    if _are_most(stands, 0.5):
+    n_stand = np.count_nonzero((steps == 0.0) & changes)
+    if n_stand > 0.5 * len(steps):
         raise table.error(
-            f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before',
+            f'{n_stand} of {len(rows)} rows have the time of the row before',
             cure='export times with fractions of a second, and one sensor alone',
         )
     step = float(np.median(steps)) if len(steps) else 0.0
@@ -335,7 +324,3 @@ def _checked_times(table: TextTable, times: Times, values: Floats, column: int |
             'more',
         )
     return times
-
-
-def _are_most(rows: NDArray[np.bool_], share: float) -> bool:
-    return bool(np.count_nonzero(rows) > share * max(len(rows), 1))

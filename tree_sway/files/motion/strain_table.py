@@ -75,7 +75,7 @@ def read_strain(path: Path) -> StrainRecord:
             f'{max(size - 1, 0)} columns beside the time',
             cure='give the time, then two columns for each place: north side, east side',
         )
-    dated = table.cells(0, range(len(table.texts)))
+    dated = table.cells(0, table.rows)
     times = times_of(dated)
     unit = name_and_unit(columns[1], 'strain')[1]
     factor = table.known_factor('strain', unit) if unit else 1.0

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files.atomic_file import refuse_unwritable
+from tree_sway.files.atomic_file import refuse_unwritable, refusing
 from tree_sway.files.paths import path_of
 from tree_sway.files.text_file import read_bytes
 from tree_sway.twin import ObservedTree, sensor_reports
@@ -147,21 +147,14 @@ class TreeHistory:
         for each in sensor_reports(twin):
             values[f'{each.name}: {_REFUSED}'] = each.refused
             values[f'{each.name}: {_CHANGE}'] = getattr(each.change, 'ratio', None)
-        date = datetime.now(timezone.utc).isoformat(timespec='seconds').replace('+00:00', 'Z')
+        date = datetime.now(timezone.utc).strftime('%Y-%m-%dT%H:%M:%SZ')
         columns = _columns(self._names)
         known = [values[column] for column in columns[1:]]
         line = _line_of([date, *('' if each is None else f'{each:.6g}' for each in known)])
-        try:
-            with self._path.open('a+b') as file:
-                begin = '' if file.tell() else _line_of(columns)
-                if file.tell():
-                    file.seek(-1, os.SEEK_END)
-                    # A full disk or a loss of power leaves the last row without its end.
-                    begin = '' if file.read(1) == b'\n' else '\n'
-                file.write((begin + line).encode())
-        except OSError as error:
-            raise FormatError(
-                f'cannot be written: {error.strerror or error}',
-                where=str(self._path),
-                cure='make room',
-            ) from error
+        with refusing(self._path, 'make room'), self._path.open('a+b') as file:
+            begin = '' if file.tell() else _line_of(columns)
+            if file.tell():
+                file.seek(-1, os.SEEK_END)
+                # A full disk or a loss of power leaves the last row without its end.
+                begin = '' if file.read(1) == b'\n' else '\n'
+            file.write((begin + line).encode())

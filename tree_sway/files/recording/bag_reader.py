@@ -6,8 +6,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Collection
-from dataclasses import dataclass
-from itertools import accumulate
+import io
 from pathlib import Path
 import struct
 from typing import NamedTuple
@@ -24,8 +23,7 @@ _BODY = 4
 """Bytes of encapsulation, from which on numbers are aligned."""
 
 
-@dataclass(frozen=True)
-class BagContent:
+class BagContent(NamedTuple):
     """
     Contents of a bag: types of topics as ``package/msg/Name``, and the wanted messages.
 
@@ -35,9 +33,7 @@ class BagContent:
     types: dict[str, str]
     messages: dict[str, list[tuple[int, bytes]]]
 
-    def chosen(
-        self, topic: str | None, kinds: Collection[str], what: str, path: Path, form: str = ''
-    ) -> str:
+    def chosen(self, topic: str | None, kinds: Collection[str], what: str, form: str = '') -> str:
         """
         Return the topic of some types of a name, or the only one; else a `FormatError`.
 
@@ -53,7 +49,7 @@ class BagContent:
         if not known:
             there = ', '.join(f'{name} ({kind})' for name, kind in [*self.types.items()][:10])
             cure = f'there is {there or "nothing"}; {what} is one of {", ".join(kinds)}'
-        raise FormatError(problem, where=str(path), cure=cure)
+        raise FormatError(problem, cure=cure)
 
 
 def read_bag(path: Path, types: Collection[str]) -> BagContent:
@@ -69,21 +65,18 @@ def read_bag(path: Path, types: Collection[str]) -> BagContent:
 
     """
     if not path.exists():
-        raise FormatError('no such bag', where=str(path), cure='check the path')
+        raise FormatError('no such bag', cure='check the path')
     if (path / 'record.yaml').is_file():
         raise FormatError(
             'a record of wind and motion, not a bag',
-            where=str(path),
             cure='give a table of it, wind.csv or motion_1.csv; lab twin takes all of it',
         )
     arrays = bounded_arrays(_messages_of_bag, path, *types, kind='a bag', cure=_CURE)
     topics = arrays['topics'].tolist()
     content = BagContent(dict(topics), {topic: [] for topic, kind in topics if kind in types})
-    data = arrays['data'].tobytes()
-    ends = list(accumulate(arrays['size'].tolist(), initial=0))
-    rows = zip(arrays['topic'].tolist(), arrays['stamp'].tolist(), strict=True)
-    for row, (topic, stamp) in enumerate(rows):
-        content.messages[topics[topic][0]].append((stamp, data[ends[row] : ends[row + 1]]))
+    data = io.BytesIO(arrays['data'])
+    for topic, stamp, size in arrays['messages'].tolist():
+        content.messages[topics[topic][0]].append((stamp, data.read(size)))
     return content
 
 
@@ -111,7 +104,7 @@ def numbers_of(data: bytes, count: int, *, has_header: bool = True) -> Numbers |
 
 
 def _messages_of_bag(path: str, *types: str) -> Arrays:
-    """Yield topics and their types, (t, 2), and of each message topic, stamp, size and bytes."""
+    """Yield topics and types, (t, 2), topic, stamp and size of each message, (n, 3), and bytes."""
     from rosbags.rosbag2 import Reader
 
     parts = [Path(path)]
@@ -120,9 +113,7 @@ def _messages_of_bag(path: str, *types: str) -> Arrays:
         parts = sorted(each for each in parts[0].iterdir() if each.suffix in ('.db3', '.mcap'))
         if not parts:
             raise ValueError('no metadata.yaml, no .db3 and no .mcap file in it')
-    numbers = array('q')
-    stamps = array('q')
-    sizes = array('q')
+    messages = array('q')
     content = bytearray()
     for part in parts:
         with Reader(part) as reader:
@@ -130,10 +121,8 @@ def _messages_of_bag(path: str, *types: str) -> Arrays:
             wanted = [each for each in reader.connections if each.msgtype in types]
             number = {topic: i for i, topic in enumerate(topics)}
             for connection, stamp, data in reader.messages(wanted) if wanted else ():
-                numbers.append(number[connection.topic])
-                stamps.append(stamp)
-                sizes.append(len(data))
+                messages.extend((number[connection.topic], stamp, len(data)))
                 content += data
     yield 'topics', np.array(list(topics.items()), dtype=np.str_).reshape(-1, 2)
-    yield from (('topic', np.array(numbers)), ('stamp', np.array(stamps)))
-    yield from (('size', np.array(sizes)), ('data', np.array(memoryview(content))))
+    yield 'messages', np.array(messages).reshape(-1, 3)
+    yield 'data', np.array(memoryview(content))

@@ -10,8 +10,8 @@ over diameters are within a factor of 1.3.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,7 @@ _HEIGHTS = 3.0
 _SLENDERNESSES = 1.3
 
 
-@dataclass(frozen=True)
-class KindClasses:
+class KindClasses(NamedTuple):
     """Height [m] and height over diameter, 0 if unknown, of each tree's grown tree, (n,)."""
 
     height: Floats

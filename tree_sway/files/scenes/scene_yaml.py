@@ -32,7 +32,7 @@ from tree_sway.files.paths import is_file, path_of
 from tree_sway.files.scenes.stand_table import read_stand_table
 from tree_sway.files.scenes.tree_names import refuse_same_names
 from tree_sway.files.text_file import read_text
-from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.imported_tree import said_of, TreeFile
 from tree_sway.files.yaml_document import packaged_schema, read_yaml, YamlDocument
 
 OpenTree = Callable[..., TreeFile]
@@ -73,8 +73,7 @@ def parse_scene(text: str, open_tree: OpenTree, path: Path, *, exact: bool = Fal
         'convection_ratio': values.get('convection_ratio', 1.0),
     }
     if 'trees' in values:
-        trees, notes, faults = _trees(document, open_tree, path.parent)
-        return Scene(trees, notes=tuple(notes), faults=tuple(faults), **common)
+        return _scene_of_trees(document, open_tree, path.parent, common)
     kinds = {}
     for number, entry in enumerate(values.get('kinds', ())):
         try:
@@ -85,10 +84,10 @@ def parse_scene(text: str, open_tree: OpenTree, path: Path, *, exact: bool = Fal
     return read_stand_table(table, kinds, seed=values.get('seed', 0), exact=exact, **common)
 
 
-def _trees(
-    document: YamlDocument, open_tree: OpenTree, folder: Path
-) -> tuple[list[PlacedTree], list[str], list[str]]:
-    """Trees of the list, and notes and faults of their importers."""
+def _scene_of_trees(
+    document: YamlDocument, open_tree: OpenTree, folder: Path, common: dict[str, Any]
+) -> Scene:
+    """Scene of the trees of the list, with notes and faults of their importers."""
     entries = document.values['trees']
     refuse_same_names(
         [entry['name'] for entry in entries], lambda number: document.where('trees', number)
@@ -104,8 +103,7 @@ def _trees(
         return open_tree(_beside(folder, tree), seed, **asked)
 
     trees = []
-    notes = list[str]()
-    faults = list[str]()
+    files = []
     for number, entry in enumerate(entries):
         name = entry['name']
         where = document.where('trees', number)
@@ -119,9 +117,8 @@ def _trees(
         place: dict[str, Any] = {key: entry[key] for key in _PLACE if key in entry}
         placed = PlacedTree(name, file.tree, species=file.species, learned=file.learned, **place)
         trees.append(placed)
-        notes += [f'{name}: {note}' for note in file.notes]
-        faults += [f'{name}: {fault}' for fault in file.faults]
-    return trees, notes, faults
+        files.append((name, file))
+    return Scene(trees, **said_of(files), **common)
 
 
 def _beside(folder: Path, name: str) -> str | Path:

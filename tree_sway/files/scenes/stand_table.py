@@ -72,17 +72,17 @@ def read_stand_table(
     keys = [wood[each].key if each in wood else each for each in inventory.species]
     sizes = inventory.height, inventory.diameter
     classes = own_kinds(*sizes) if exact else kind_classes(keys, *sizes)
-    heights, slenderness = classes.height.tolist(), classes.slenderness.tolist()
-    grown: dict[tuple[str, float, float], GrownTree] = {}
+    grown: dict[tuple[Any, ...], GrownTree] = {}
     random_yaw = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, len(keys))
     yaw = np.where(np.isnan(inventory.yaw), random_yaw, inventory.yaw)
     trees = []
-    for row, (key, name) in enumerate(zip(keys, inventory.species, strict=True)):
-        own_class = key, heights[row], slenderness[row]
+    rows = zip(keys, inventory.species, *(each.tolist() for each in classes), strict=True)
+    for row, (key, name, *size) in enumerate(rows):
+        own_class = key, *size
         try:
             kind = given.get(name) or grown.get(own_class)
             if kind is None:
-                kind = grown[own_class] = _grown_kind(wood[name], *own_class[1:], seed, notes)
+                kind = grown[own_class] = _grown_kind(wood[name], *size, seed, notes)
             trees.append(_placed(inventory, row, kind, key, float(yaw[row])))
         except TreeSwayError as error:
             raise error.at(inventory.where(row)) from None

@@ -19,11 +19,10 @@ def refuse_same_names(names: Sequence[str], where: Callable[[int], str]) -> None
                 where=where(number),
                 cure='leave it out: it separates tree and branch in the names of segments',
             )
-        if name in first:
+        if first.setdefault(name, number) != number:
             line = where(first[name]).rsplit(':', 1)[1]
             raise FormatError(
                 f"two trees called '{name}', the first in line {line}",
                 where=where(number),
                 cure='give each its own name',
             )
-        first[name] = number

@@ -4,13 +4,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from tree_sway.core.species import Species
 from tree_sway.core.tree import oddities, refuse_implausible, Tree
 from tree_sway.drawn import Drawn
 from tree_sway.errors import inside
 from tree_sway.twin import LearnedTree
+
+
+def said_of(files: Iterable[tuple[str, TreeFile]]) -> dict[str, Any]:
+    """Return ``notes`` and ``faults`` of trees, each behind the name that its tree has."""
+    named = list(files)
+    return {
+        kind: tuple(f'{name}: {text}' for name, file in named for text in getattr(file, kind))
+        for kind in ('notes', 'faults')
+    }
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,7 +23,7 @@ from tree_sway.files.scenes.inventory.inventory_file import lacking_columns
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
 from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table
 from tree_sway.files.text_file import read_head
-from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.imported_tree import said_of, TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 from tree_sway.files.trees.tree_options import same
 from tree_sway.files.yaml_document import begins_with_key
@@ -215,14 +215,10 @@ def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
     one = files[0]
     trees = []
     for each in files:
-        moved = np.subtract(each.origin, one.origin)
-        x, y, z = (moved + each.tree.start[0]).tolist()
-        placed = PlacedTree(
-            each.tree.name, each.tree, x, y, z, species=each.species, learned=each.learned
-        )
+        tree = each.tree
+        x, y, z = (np.subtract(each.origin, one.origin) + tree.start[0]).tolist()
+        placed = PlacedTree(tree.name, tree, x, y, z, species=each.species, learned=each.learned)
         trees.append(placed)
     if len(files) == 1:
         return Scene(trees, one.tree.name, one.source, one.notes, faults=one.faults)
-    notes = [f'{each.tree.name}: {note}' for each in files for note in each.notes]
-    faults = [f'{each.tree.name}: {fault}' for each in files for fault in each.faults]
-    return Scene(trees, name, one.source, tuple(notes), faults=tuple(faults))
+    return Scene(trees, name, one.source, **said_of((each.tree.name, each) for each in files))

@@ -65,9 +65,10 @@ def read_trees(
     else:
         files = [tree_of_cylinders(wanted.in_metres(each), path) for each in content]
     if len({each.tree.name for each in files}) < len(files):
-        for number, each in enumerate(files, start=1):
-            tree = replace(each.tree, name=f'{each.tree.name}{number}')
-            files[number - 1] = replace(each, tree=tree)
+        files = [
+            replace(each, tree=replace(each.tree, name=f'{each.tree.name}{number}'))
+            for number, each in enumerate(files, start=1)
+        ]
     if wanted.tree not in range(len(files) + 1):
         raise ParameterError(
             f'tree {wanted.tree} of {len(files)}', cure=f'give 1 to {len(files)}, or 0 for all'

@@ -121,7 +121,7 @@ class TreeOptions:
         """
         tree = content.tree
         notes = list(content.notes)
-        origin = np.zeros(3)
+        origin = content.origin
         given = content.species if self.species is None else species_named(self.species)
         species = wood(given)
         faults = list(content.faults)
@@ -140,10 +140,10 @@ class TreeOptions:
             )
             notes.append(_why_nothing_grows(twig) if beyond is None else beyond.sentence())
         if self.to_origin and tree.start[0].any():
-            origin = tree.start[0].copy()
+            x, y, z = tree.start[0].tolist()
+            origin = x, y, z
             tree = replace(tree, start=tree.start - origin, end=tree.end - origin)
-            moved = ', '.join(f'{-x:.6g}' for x in origin)
-            notes.append(f'moved by {moved} m, the base to the origin')
+            notes.append(f'moved by {-x:.6g}, {-y:.6g}, {-z:.6g} m, the base to the origin')
         if self.thicken:
             # Numbers that are no tree's are refused where the tree is checked or simulated.
             with suppress(TreeSwayError):
@@ -152,10 +152,7 @@ class TreeOptions:
                     tree, species, in_leaf=is_in_leaf(species, in_leaf)
                 )
                 faults += [] if thickening is None else [thickening.sentence(tree)]
-        x, y, z = origin.tolist()
-        done = replace(
-            content, tree=tree, notes=tuple(notes), faults=tuple(faults), origin=(x, y, z)
-        )
+        done = replace(content, tree=tree, notes=tuple(notes), faults=tuple(faults), origin=origin)
         return done if species is content.species else done.of_species(species)
 
 

@@ -45,7 +45,7 @@ def read_bag_wind(
     WindConvention(direction_convention)  # refused before the file is read
     source = str(path)
     bag = read_bag(path, WIND_TYPES)
-    chosen = bag.chosen(topic, WIND_TYPES, 'wind', path, '--wind-option topic=')
+    chosen = bag.chosen(topic, WIND_TYPES, 'wind', '--wind-option topic=')
     kind = bag.types[chosen]
     messages = bag.messages[chosen]
     rows = WindRows(source, row_name='message')
@@ -61,9 +61,8 @@ def read_bag_wind(
         epoch = stamp if epoch < 0 else epoch
         x, y, z = found.values
         rows.add(number, (stamp - epoch) * 1e-9, (x, y, z))
-    notes = [f'topic {chosen}, {kind}']
-    if n_unstamped:
-        notes.append(f'{n_unstamped} messages without a stamp have their time of recording')
+    unstamped = f'{n_unstamped} messages without a stamp have their time of recording'
+    notes = f'topic {chosen}, {kind}', unstamped * bool(n_unstamped)
     return rows.record(
-        epoch=epoch * 1e-9, notes=tuple(notes), yaw=yaw, direction_convention=direction_convention
+        epoch=epoch * 1e-9, notes=notes, yaw=yaw, direction_convention=direction_convention
     )

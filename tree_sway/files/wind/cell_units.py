@@ -19,13 +19,11 @@ def with_units_in_head(table: TextTable) -> TextTable:
     """Return a table whose cells of speed and gust are numbers alone; itself if they are."""
     units: dict[int, str] = {}
     for quantity in ('wind_speed', 'gust'):
-        column = table.find(quantity)
-        if column is not None:
-            rows = range(min(len(table.texts), _LOOKED_AT))
-            found = {_unit_of(cell) for cell in table.cells(column.index, rows) if cell.strip()}
-            unit = found.pop() if len(found) == 1 else ''
-            if unit:
-                units[column.index] = unit
+        for index in table.find_all(quantity)[:1]:
+            cells = table.cells(index, table.rows[:_LOOKED_AT])
+            found = {_unit_of(cell) for cell in cells if cell.strip()}
+            if len(found) == 1 and found != {''}:
+                units[index] = found.pop()
     if not units:
         return table
 

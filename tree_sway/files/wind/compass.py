@@ -13,7 +13,8 @@ from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import COMPASS
 from tree_sway.files.text_file import finite
 
-FULL_CIRCLE = 401.0
+_CALM = 1e-9
+_FULL_CIRCLE = 401.0
 """Largest direction in degrees: a little more than a circle, and less than the codes of errors."""
 
 _POINTS = 'N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW'.split()
@@ -28,23 +29,28 @@ def degrees_of(cells: Sequence[str]) -> Floats:
     A point is such as ``WNW``, ``West`` or ``Noroeste``. ``O`` is east where others have a W, as
     in German, and west where others have an E, as in French and Spanish.
     """
-    numbers = [finite(cell.removesuffix('°').removesuffix('º')) for cell in cells]
-    if all(number is not None for number in numbers):
-        return np.array(numbers, dtype=np.float64)
+    plain = [finite(cell.removesuffix('°').removesuffix('º')) for cell in cells]
+    numbers = np.array(plain, dtype=np.float64)
+    if np.isfinite(numbers).all():
+        return numbers
     points = [_point(cell) for cell in cells]
     letters = set(''.join(points))
     east_or_west = 'E' if 'W' in letters else 'W' if 'E' in letters else 'O'
-    named = (_DEGREES.get(point.replace('O', east_or_west), np.nan) for point in points)
-    pairs = zip(numbers, named, strict=True)
-    return np.array([point if number is None else number for number, point in pairs])
+    named = [_DEGREES.get(point.replace('O', east_or_west), np.nan) for point in points]
+    return np.where(np.isnan(numbers), named, numbers)
 
 
-def velocity_to(speed: Floats, bearing: Floats) -> Floats:
-    """Return air of a speed in [m/s] that moves to a bearing from north in [rad], (n, 3)."""
-    velocity = np.zeros((len(speed), 3))
-    velocity[:, 0] = speed * np.sin(bearing)
-    velocity[:, 1] = speed * np.cos(bearing)
-    return velocity
+def velocity_from(speed: Floats, degrees: Floats, turn: float = 0.0) -> Floats:
+    """
+    Return the wind of speeds [m/s] and directions that it comes from, east, north, up, (n, 3).
+
+    It is NaN where either is none; in a calm the direction may be missing. Directions are counted
+    from a ``turn`` [rad] before north.
+    """
+    degrees = np.where(np.isnan(degrees) & (np.abs(speed) < _CALM), 0.0, degrees)
+    is_good = (speed >= 0.0) & (np.abs(degrees) < _FULL_CIRCLE)
+    bearing = np.radians(np.where(is_good, degrees, np.nan)) - turn
+    return -np.column_stack([speed * np.sin(bearing), speed * np.cos(bearing), 0.0 * bearing])
 
 
 def _point(cell: str) -> str:

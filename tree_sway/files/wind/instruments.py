@@ -13,6 +13,7 @@ is the wind of an instant and no mean; ``logged`` lines are read from files as w
 
 from __future__ import annotations
 
+from cmath import rect
 from functools import partial
 import math
 from pathlib import Path
@@ -93,15 +94,12 @@ def _reading(
         known_unit = unit_factor('speed', units.get(unit, ''))
         text += unit if known_unit is None else ''
         factor = known_unit or 0.0
-    gust, up = (finite(cells.get(name) or '') for name in ('gust', 'w'))
-    if u := cells.get('u'):
-        sizes = factor * float(u), factor * float(cells['v'] or 0.0)
-        axes = [heading + math.radians(each) for each in known['axes']]
-        east, north = (
-            sum(size * turned(axis) for size, axis in zip(sizes, axes, strict=True))
-            for turned in (math.sin, math.cos)
-        )
-        return of_velocity(kind, (east, north, factor * (up or 0.0)))
+    told = {name: finite(cells.get(name) or '') for name in ('u', 'v', 'w', 'gust')}
+    sizes = {name: factor * size for name, size in told.items() if size is not None}
+    if 'u' in sizes:
+        axes = zip((sizes['u'], sizes['v']), known['axes'], strict=True)
+        flow = sum(rect(size, heading + math.radians(axis)) for size, axis in axes)
+        return of_velocity(kind, (flow.imag, flow.real, sizes.get('w', 0.0)))
     return reading_of(
         kind,
         text,
@@ -109,7 +107,7 @@ def _reading(
         factor=factor,
         turn=heading,
         rise=math.radians(float(cells.get('elevation') or 0.0)),
-        up=None if up is None else factor * up,
-        gust=None if gust is None else factor * gust,
+        up=sizes.get('w'),
+        gust=sizes.get('gust'),
         interval=0.0 if known['instant'] else None,
     )

@@ -12,6 +12,7 @@ since 1900-01-01``). The extra ``netcdf`` reads them.
 from __future__ import annotations
 
 from array import array
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +21,9 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.bounded import Arrays, bounded_arrays
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import is_named, rank_of
 from tree_sway.files.table_file import known_factor
-from tree_sway.files.wind.compass import FULL_CIRCLE, velocity_to
+from tree_sway.files.wind.compass import velocity_from
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.station_means import filled_means
 
@@ -50,7 +51,7 @@ def read_netcdf_wind(
         If netCDF4 is not installed.
 
     """
-    point = [repr(degrees) for degrees in _point(at) or ()]
+    point = map(repr, _point(at))
     cure = 'download it again'
     found = bounded_arrays(_winds_of_netcdf, path, *point, kind='a netCDF file', cure=cure)
     rows = WindRows(str(path), row_name='sample')
@@ -72,14 +73,14 @@ def _winds_of_netcdf(path: str, *at: str) -> Arrays:
     """Yield velocity, seconds after the first, gust where there is one, epoch and notes."""
     from netCDF4 import Dataset
 
-    point = (float(at[0]), float(at[1])) if at else None
     with Dataset(path) as data:
-        yield from _read(data, point)
+        yield from _read(data, at)
 
 
-def _point(at: tuple[str, ...] | None) -> tuple[float, float] | None:
+def _point(at: tuple[str, ...] | None) -> tuple[float, ...]:
+    """Return a latitude and a longitude, or nothing."""
     if at is None:
-        return None
+        return ()
     try:
         latitude, longitude = (float(part) for part in at)
     except (TypeError, ValueError):
@@ -89,64 +90,51 @@ def _point(at: tuple[str, ...] | None) -> tuple[float, float] | None:
     return latitude, longitude
 
 
-def _read(data: Any, point: tuple[float, float] | None) -> Arrays:
+def _read(data: Any, point: Sequence[str]) -> Arrays:
     found = {each: _find(data, each) for each in ('time', *_COMPONENTS, *_POLAR, 'gust')}
+    clock = found['time']
     is_polar = None in [found[each] for each in _COMPONENTS]
-    if found['time'] is None or (is_polar and None in [found[each] for each in _POLAR]):
+    first, second = (found[each] for each in (_POLAR if is_polar else _COMPONENTS))
+    if None in (clock, first, second):
         said = [word for each, word in _WORDS.items() if found[each] is None]
         raise FormatError(
             f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}',
             cure='choose the 10 m u and v components of wind, or its speed and direction',
         )
-    clock = data.variables[found['time']]
-    names = _POLAR if is_polar else _COMPONENTS
-    first, second = (data.variables[found[each]] for each in names)
     notes, place = _place(data, first, point)
     one = _series(first, 'speed', clock, place)
     other = _series(second, 'angle' if is_polar else 'speed', clock, place)
-    components = np.stack([one, other, np.zeros(len(one))], axis=1)
+    components = np.column_stack([one, other, np.zeros(len(one))])
     seconds, epoch = _seconds(clock)
-    yield 'velocity', _velocity_from(one, other) if is_polar else components
+    yield 'velocity', velocity_from(one, np.degrees(other)) if is_polar else components
     yield from (('seconds', seconds), ('epoch', epoch))
     yield 'notes', np.array(notes, dtype=np.str_)
     if found['gust'] is not None:
-        yield 'gust', _series(data.variables[found['gust']], 'speed', clock, place)
+        yield 'gust', _series(found['gust'], 'speed', clock, place)
 
 
-def _velocity_from(speed: Floats, bearing: Floats) -> Floats:
-    """Wind of a speed and the direction it comes from [rad], NaN where either is none, (n, 3)."""
-    bearing = np.where(np.isnan(bearing) & (speed == 0.0), 0.0, bearing)
-    good = (speed >= 0.0) & (np.abs(np.degrees(bearing)) < FULL_CIRCLE)
-    return velocity_to(-speed, np.where(good, bearing, np.nan))
-
-
-def _find(data: Any, quantity: str) -> str | None:
+def _find(data: Any, quantity: str) -> Any:
     """Variable of a quantity whose name comes first among the usual ones, or standard name."""
-    ranks = list[tuple[bool, int, str]]()
-    for name, variable in data.variables.items():
-        standard_name = str(getattr(variable, 'standard_name', ''))
-        for is_standard, each in ((False, name), (True, standard_name)):
-            rank = rank_of(each, quantity)
-            if rank is not None:
-                ranks.append((is_standard, rank, name))
-    return min(ranks)[2] if ranks else None
+    ranks = [
+        (is_standard, rank, name)
+        for name, variable in data.variables.items()
+        for is_standard, each in enumerate((name, str(getattr(variable, 'standard_name', ''))))
+        if (rank := rank_of(each, quantity)) is not None
+    ]
+    return data.variables[min(ranks)[2]] if ranks else None
 
 
-def _place(
-    data: Any, variable: Any, point: tuple[float, float] | None
-) -> tuple[list[str], dict[str, int]]:
+def _place(data: Any, variable: Any, point: Sequence[str]) -> tuple[list[str], dict[str, int]]:
     """Index of each dimension at a point, and a note of where that is."""
     chosen = dict[str, int]()
     said = list[str]()
     for axis, quantity in enumerate(('latitude', 'longitude')):
-        name = next((d for d in variable.dimensions if rank_of(d, quantity) is not None), None)
-        if name is None:
-            continue
-        degrees = np.asarray(data.variables[name][:], dtype=np.float64)
-        wanted = degrees[0] if point is None else point[axis]
-        apart = np.abs((degrees - wanted + 180.0) % 360.0 - 180.0)
-        chosen[name] = int(np.argmin(apart))
-        said.append(f'{quantity} {degrees[chosen[name]]:g}')
+        for name in [d for d in variable.dimensions if is_named(d, quantity)][:1]:
+            degrees = np.asarray(data.variables[name][:], dtype=np.float64)
+            wanted = float(point[axis]) if point else degrees[0]
+            apart = np.abs((degrees - wanted + 180.0) % 360.0 - 180.0)
+            chosen[name] = int(np.argmin(apart))
+            said.append(f'{quantity} {degrees[chosen[name]]:g}')
     grid = f'the point at {", ".join(said)}'
     return ([f'{grid}; at=LATITUDE,LONGITUDE chooses another'] if said else []), chosen
 

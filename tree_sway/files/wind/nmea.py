@@ -39,7 +39,10 @@ Sentences in the order of preference: those that depend least on the motion of t
 """
 
 _UNITS = {'N': 1852.0 / 3600.0, 'K': 1.0 / 3.6, 'M': 1.0, 'S': 0.44704}
-_SENTENCE = re.compile(r'\$[A-Z]{2}(MWV|MWD|MDA|VWR|VWT|XDR),([^*]*)(\*.*)?', re.ASCII | re.DOTALL)
+_SENTENCE = re.compile(
+    r'\$([A-Z]{2}(MWV|MWD|MDA|VWR|VWT|XDR),([^*]*))(?:\*(.*))?', re.ASCII | re.DOTALL
+)
+"""Body, name, fields and checksum."""
 
 
 def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> Reading | None:
@@ -61,17 +64,13 @@ def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> Rea
     sentence = _SENTENCE.match(line, max(line.rfind('$'), 0))
     if sentence is None:
         return None
-    name, content, check = sentence.groups()
+    body, name, content, check = sentence.groups()
     fields = content.strip().split(',')[12 if name == 'MDA' else 0 :]
-    kind = name
-    if name == 'MWV':
-        kind = f'MWV {"".join(fields[1:2])}'
+    kind = f'MWV {"".join(fields[1:2])}' if name == 'MWV' else name
     lacks_wind = name == 'XDR' and not {'A', 'S'} <= set(fields[::4])
     if lacks_wind or kind not in SENTENCES:
         return None
-    sent_sum = None if check is None else check[1:].strip()
-    body = line[sentence.start() + 1 : sentence.start(3)]
-    if why := why_broken(len(line), sent_sum, body):
+    if why := why_broken(len(line), check and check.strip(), body):
         return Refusal(kind, why)
     try:
         angle, speed, unit, turn = _READERS[name](fields, heading, declination)

@@ -139,27 +139,29 @@ class WindRows:
         """
         Check times and speeds and return the record, converted by a `WindConvention`.
 
+        Empty notes are left out.
         ``epoch`` is the origin of the times, in seconds after 1970-01-01, None if unknown. Raises
         a `FormatError` if no good row is left.
         """
-        time = np.array(self.time, dtype=np.float64)
-        velocity = np.array(self.velocity, dtype=np.float64).reshape(-1, 3)
+        time = np.array(self.time)
+        velocity = np.array(self.velocity).reshape(-1, 3)
         velocity = WindConvention(direction_convention, yaw_offset=yaw).velocity(velocity)
         speed = np.sqrt(np.einsum('ij,ij->i', velocity, velocity))
         good = np.isfinite(time) & (speed <= FASTEST_WIND)
         for index in np.flatnonzero(~good):
             why = f'{speed[index]:.3g} m/s at {time[index]:g} s'
             self.refuse(self.number[index], why if np.isfinite(time[index]) else 'no time in it')
-        late = ~increasing(time[good])
+        rows = np.flatnonzero(good)
+        late = ~increasing(time[rows])
         if 2 * np.count_nonzero(late) > len(late):
             raise FormatError(
                 f'time stands or goes back in {np.count_nonzero(late)} of {len(late)} rows',
                 where=self.source,
                 cure='put the rows in order, and call the column of the clock time',
             )
-        for index in np.flatnonzero(good)[late]:
+        for index in rows[late]:
             self.refuse(self.number[index], 'its time is out of order')
-        rows = np.flatnonzero(good)[~late]
+        rows = rows[~late]
         if len(rows) == 0:
             first = f'; first {self.first_refused}' if self.refused else ''
             raise FormatError(
@@ -167,40 +169,41 @@ class WindRows:
                 where=self.source,
                 cure='check that it is a file of wind',
             )
-        time = time[rows]
-        velocity = np.ascontiguousarray(velocity[rows])
+        begin = float(time[rows[0]])
+        time = time[rows] - begin
         gust = None if self.gust is None else self.gust[rows]
-        doubts = (*_gaps(time - time[0]), *_slower_gusts(gust, speed[rows]))
+        told = (*notes, _gaps(time), _slower_gusts(gust, speed[rows]))
         return WindRecord(
-            time - time[0], velocity, self.source, self.refused, self.first_refused,
-            None if epoch is None else epoch + float(time[0]), (*notes, *doubts), gust,
+            time, np.ascontiguousarray(velocity[rows]), self.source, self.refused,
+            self.first_refused, None if epoch is None else epoch + begin,
+            tuple(filter(None, told)), gust,
         )  # fmt: skip
 
 
-def _slower_gusts(gust: Floats | None, speed: Floats) -> tuple[str, ...]:
+def _slower_gusts(gust: Floats | None, speed: Floats) -> str:
     """Return a sentence about gusts (n,) that are mostly slower than the wind, in [m/s]."""
     if gust is None:
-        return ()
+        return ''
     slower = np.count_nonzero(gust < speed)
     if 2 * slower <= np.count_nonzero(np.isfinite(gust)):
-        return ()
-    return (f'the gust is slower than the wind in {slower} rows: are the columns swapped?',)
+        return ''
+    return f'the gust is slower than the wind in {slower} rows: are the columns swapped?'
 
 
-def _gaps(time: Floats) -> tuple[str, ...]:
+def _gaps(time: Floats) -> str:
     """Return a sentence about the gaps in times (n,) [s], if there are any."""
     apart = np.diff(time)
     if len(apart) < _LEAST_OF_GAPS:
-        return ()
+        return ''
     period = float(np.median(apart))
     gaps = apart[apart > max(_GAP_PERIODS * period, _SHORTEST_GAP)]
     if not len(gaps):
-        return ()
+        return ''
     longest = int(apart.argmax())
     meanwhile = 'a straight line' if period >= LEAST_INTERVAL else 'a calm'
     return (
         f'no samples in {gaps.sum():.4g} of {time[-1]:.4g} s, the longest gap {gaps.max():.4g} s '
-        f'from {time[longest]:.6g} s on: {meanwhile} is taken there',
+        f'from {time[longest]:.6g} s on: {meanwhile} is taken there'
     )
 
 
@@ -212,16 +215,13 @@ def increasing(time: Floats) -> NDArray[np.bool_]:
     ends: list[float] = []
     rank = np.empty(len(time), dtype=np.int64)
     for index, value in enumerate(time.tolist()):
-        rank[index] = bisect_left(ends, value)
-        if rank[index] == len(ends):
-            ends.append(value)
-        else:
-            ends[rank[index]] = value
+        rank[index] = place = bisect_left(ends, value)
+        ends[place : place + 1] = [value]  # a new one at the end
     wanted = len(ends) - 1
     bound = float('inf')
-    for index in range(len(time) - 1, -1, -1):
+    for index in reversed(range(len(time))):
         keep[index] = rank[index] == wanted and time[index] < bound
         if keep[index]:
-            wanted = wanted - 1
+            wanted -= 1
             bound = float(time[index])
     return keep

@@ -4,38 +4,23 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import unit_factor
 from tree_sway.files.table_file import are_nines, Column, TextTable
 from tree_sway.files.text_file import finite
-from tree_sway.files.wind.compass import degrees_of, FULL_CIRCLE, velocity_to
+from tree_sway.files.wind.compass import degrees_of, velocity_from
 from tree_sway.files.wind.record import WindRows
 
-_CALM = 1e-9
 
-
-class RowWinds(NamedTuple):
-    """Velocity of each row in [m/s], (n, 3), and which rows are good, (n,)."""
-
-    velocity: Floats
-    good: NDArray[np.bool_]
-
-
-def winds_of_components(table: TextTable, columns: list[Column], rows: WindRows) -> RowWinds:
-    """Return the wind of two or three components; rows without numbers are refused."""
+def winds_of_components(table: TextTable, columns: list[Column], rows: WindRows) -> Floats:
+    """Return the wind of two or three components, (n, 3); rows without numbers are refused."""
     indices = [column.index for column in columns]
     values = table.values(indices) * [column.factor for column in columns]
-    good = np.all(np.isfinite(values), axis=1)
-    for row in np.flatnonzero(~good).tolist():
+    for row in np.flatnonzero(np.isnan(values).any(axis=1)).tolist():
         rows.refuse(table.numbers[row], table.why_none(row, indices))
-    velocity = np.zeros((len(values), 3))
-    velocity[:, : values.shape[1]] = values
-    return RowWinds(velocity, good)
+    return np.pad(values, ((0, 0), (0, 3 - len(columns))))
 
 
 def winds_of_directions(
@@ -45,23 +30,23 @@ def winds_of_directions(
     rows: WindRows,
     yaw: float,
     convention: str,
-) -> RowWinds:
+) -> Floats:
     """
-    Return the wind of speeds and directions, or of speeds from one direction in degrees.
+    Return the wind of speeds and directions, or of speeds from one direction in degrees, (n, 3).
 
     A direction may be missing in a calm. Rows are refused without a speed or a direction.
     """
     speeds = table.values([speed.index])[:, 0] * speed.factor
-    cells = table.cells(speed.index, range(len(speeds)))
+    cells = table.cells(speed.index, table.rows)
     speeds[are_nines(cells, speeds / speed.factor)] = np.nan
     degrees, texts = _degrees(table, direction)
-    degrees = np.where(np.isnan(degrees) & (np.abs(speeds) < _CALM), 0.0, degrees)
-    has_speed = speeds >= 0.0
-    good = has_speed & (np.abs(degrees) < FULL_CIRCLE)
-    for row in np.flatnonzero(~good).tolist():
-        if has_speed[row]:
-            name = '' if isinstance(direction, float) else table.columns[direction.index]
-            why = _why_no_direction(name, texts[row], degrees[row])
+    velocity = velocity_from(speeds, degrees, yaw)
+    for row in np.flatnonzero(np.isnan(velocity[:, 0])).tolist():
+        if speeds[row] >= 0.0:
+            why = f'direction is {degrees[row]:g} degrees'
+            if isinstance(direction, Column) and np.isnan(degrees[row]):
+                why = f"{table.columns[direction.index]} is '{texts[row][:40]}', "
+                why += 'neither degrees nor a point of the compass'
         elif speeds[row] < 0.0:
             why = f'speed is {speeds[row]:g}'
         elif finite(cells[row]) is not None:
@@ -69,21 +54,12 @@ def winds_of_directions(
         else:
             why = table.why_none(row, [speed.index])
         rows.refuse(table.numbers[row], why)
-    bearing = np.radians(np.where(good, degrees, 0.0)) - yaw
-    against = 1.0 if convention == 'to' else -1.0
-    return RowWinds(velocity_to(against * speeds, bearing), good)
+    return -velocity if convention == 'to' else velocity
 
 
 def _degrees(table: TextTable, direction: Column | float) -> tuple[Floats, list[str]]:
-    n_rows = len(table.texts)
     if isinstance(direction, float):
-        return np.full(n_rows, direction), [''] * n_rows
-    texts = table.cells(direction.index, range(n_rows))
+        return np.full(len(table.rows), direction), [''] * len(table.rows)
+    texts = table.cells(direction.index, table.rows)
     to_degrees = direction.factor / (unit_factor('angle', 'deg') or 1.0)
     return degrees_of(texts) * to_degrees, texts
-
-
-def _why_no_direction(name: str, text: str, degrees: float) -> str:
-    if np.isfinite(degrees):
-        return f'direction is {degrees:g} degrees'
-    return f"{name} is '{text[:40]}', neither degrees nor a point of the compass"

@@ -68,28 +68,28 @@ def read_sensor_log(
     """
     if not rate > 0.0:
         raise ParameterError(f'rate is {rate:g} Hz', cure='give more than 0')
-    found: dict[str, WindRows] = {}
-    stamps: dict[str, list[str]] = {}
+    found: dict[str, tuple[WindRows, list[str]]] = {}
     for number, line in enumerate(read_lines(path), start=1):
         said = parse(line)
         if said is None:
             continue
-        rows = found.setdefault(said.kind, WindRows(str(path)))
+        rows, stamps = found.setdefault(said.kind, (WindRows(str(path)), []))
         if isinstance(said, Refusal):
             rows.refuse(number, said.reason)
         else:
             rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity(0.0))
             stamp = STAMP.search(line)
-            stamps.setdefault(said.kind, []).append('' if stamp is None else stamp[1])
+            stamps.append('' if stamp is None else stamp[1])
     there = [kind for kind in kinds if kind in found]
     if not there:
         raise FormatError(
             f'no sentence {" or ".join(kinds)}', cure="log the wind instrument's output"
         )
-    best = next((kind for kind in there if found[kind].time), there[0])
-    if found[best].time and all(stamps[best]):
-        times = times_of(stamps[best])
-        found[best].time = array('d', times.seconds)
-        return best, found[best].record(epoch=times.epoch, notes=tuple(notes))
+    best = next((kind for kind in there if found[kind][0].time), there[0])
+    rows, stamps = found[best]
+    if rows.time and all(stamps):
+        times = times_of(stamps)
+        rows.time = array('d', times.seconds)
+        return best, rows.record(epoch=times.epoch, notes=tuple(notes))
     spaced = f'{best} sentences have no times and are taken at {rate:g} Hz'
-    return best, found[best].record(notes=(spaced, *notes))
+    return best, rows.record(notes=(spaced, *notes))

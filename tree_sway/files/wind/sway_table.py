@@ -111,7 +111,7 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
 
 def _times(table: TextTable, columns: list[int], form: str, factor: float) -> Floats:
     """Seconds of each row, from numbers or from dates."""
-    rows = list(range(len(table.texts)))
+    rows = table.rows
     times = row_times(table, columns, form, factor, rows).seconds
     stamps = table.cells(columns[0], rows)
     for row in np.flatnonzero(~(np.abs(times) <= _MAX_VALUE))[:1]:

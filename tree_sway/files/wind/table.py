@@ -24,20 +24,19 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
-from tree_sway.files.column_names import folded, rank_of
+from tree_sway.files.column_names import folded, is_named, rank_of
 from tree_sway.files.layouts.known import looks_like_wind, table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import Column, TextTable
 from tree_sway.files.wind.cell_units import with_units_in_head
 from tree_sway.files.wind.record import WindRecord, WindRows
-from tree_sway.files.wind.row_winds import RowWinds, winds_of_components, winds_of_directions
+from tree_sway.files.wind.row_winds import winds_of_components, winds_of_directions
 from tree_sway.files.wind.speed_units import speed_factor
 from tree_sway.files.wind.station_means import filled_means
-from tree_sway.files.zipped import tables_in
+from tree_sway.files.zipped import table_in
 
 _COMPONENTS = ('wind_x', 'wind_y', 'wind_z')
-_HEAD = 200
 _HEIGHT = re.compile(
     r'(?:^|(?<=[ _@]))\W?(?:at? )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))|'
     r'(?<=[a-z])(\d+)m[NESW]{0,2}(?=$| ?[\[(])'
@@ -46,6 +45,8 @@ _HEIGHT = re.compile(
 _WIND = ('wind_speed', 'wind_direction', *_COMPONENTS, 'gust')
 _PLACES = ('x', 'east')
 """Names of a first component that is a place where a table has a speed and a direction."""
+_WANTED = {'the time': 'time', 'the speed': 'speed [m/s]', 'the direction': 'direction [deg]'}
+"""What a table of wind needs, and how to name the column of it."""
 _CIRCLE = 2.0 * np.pi
 _USUAL = 10.0
 """Height of the wind of stations and services [m]."""
@@ -73,56 +74,41 @@ def read_table_wind(
     WindConvention(direction_convention or 'to')  # refused before the file is read
     if direction is not None and not 0.0 <= direction <= 360.0:
         raise ParameterError(f'direction is {direction:g} degrees', cure='give 0 to 360')
-    tables = [(name, lines) for name, lines in tables_in(path) if lines]
-    is_wind = [each for each in tables if looks_like_wind('\n'.join(each[1][:_HEAD]))]
-    name, lines = (is_wind or tables)[0]
+    name, lines = table_in(path, looks_like_wind)
     whole = table_of(lines, name)
     whole.refuse_several()
-    table, note = _at_one_height(whole)
+    table, at_height = _at_one_height(whole)
     table = with_units_in_head(table)
     rows = WindRows(table.source)
-    notes = [note] if note else []
     time = time_columns(table)
     components = _components(table, columns)
     if time is not None and components:
-        notes += _repeated(table, components[0], 'wind_x')
+        notes = [at_height, _repeated(table, components[0], 'wind_x')]
         winds = winds_of_components(table, components, rows)
         convention = direction_convention or 'to'
     else:
         found = table.find('wind_speed')
-        places = table.find_all('wind_direction')
-        usual = 'from' if places else 'to'
-        places = places or table.find_all('wind_to')
-        places = [each for each in places if found is None or each != found.index]
-        from_where: Column | float | None = direction
-        if places:
-            unit = table.unit_of(places[0], 'wind_direction') or maker_of(table).get('direction')
-            from_where = Column(places[0], table.known_factor('angle', unit or 'deg'))
-        has_speed = bool(components) or found is not None
-        has_direction = bool(components) or from_where is not None
-        _refuse_missing(whole, time is not None, has_speed, has_direction)
+        from_where, usual = _direction(table, found, direction)
+        _refuse_missing(whole, time, *(components[:2] or (found, from_where)))
         assert found is not None
         assert from_where is not None
-        factor, note = speed_factor(table, found.index, 'wind_speed', speed_unit)
-        notes += [note] if note else []
+        factor, in_unit = speed_factor(table, found.index, 'wind_speed', speed_unit)
         speed = Column(found.index, factor)
-        notes += _repeated(table, speed, 'wind_speed')
-        convention = direction_convention or (usual if places else 'from')
+        convention = direction_convention or usual
         winds = winds_of_directions(table, speed, from_where, rows, yaw, convention)
-        notes += _doubt(table, from_where)
-        yaw = 0.0
-        convention = 'to'
+        repeated = _repeated(table, speed, 'wind_speed')
+        notes = [at_height, in_unit, repeated, _doubt(table, from_where)]
+        yaw, convention = 0.0, 'to'
     assert time is not None
-    stored = np.flatnonzero(winds.good)
+    stored = np.flatnonzero(np.isfinite(winds).all(axis=1))
     times = row_times(table, *time, stored.tolist())
     if len(stored) > 1 and bool((np.diff(times.seconds) < 0.0).all()):
         # The newest row first, as services export them.
         stored = stored[::-1]
         times = row_times(table, *time, stored.tolist())
-    notes += [times.note] if times.note else []
-    _fill(rows, table, winds, stored, times.seconds, speed_unit)
+    _fill(rows, table, winds[stored], stored, times.seconds, speed_unit)
     record = rows.record(
-        epoch=times.epoch, yaw=yaw, direction_convention=convention, notes=tuple(notes)
+        epoch=times.epoch, yaw=yaw, direction_convention=convention, notes=(*notes, times.note)
     )
     return filled_means(record, turbulence, seed)
 
@@ -132,37 +118,49 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
     heights: dict[str, dict[int, float]] = {}
     names = list(table.columns)
     for index, name in enumerate(names):
-        at = _HEIGHT.search(name)
-        plain = name if at is None else f'{name[: at.start()]} {name[at.end() :]}'.strip()
-        found = [each for each in _WIND if at and rank_of(plain, each) is not None]
-        if at and found:
-            names[index] = plain
-            heights.setdefault(found[0], {})[index] = float(at[1] or at[2])
-    known = set[float]()
-    for of_quantity in heights.values():
-        known |= {*of_quantity.values()}
-        for index, height in of_quantity.items():
-            names[index] = names[index] if height == min(of_quantity.values()) else ''
-    if not known:
+        if at := _HEIGHT.search(name):
+            plain = f'{name[: at.start()]} {name[at.end() :]}'.strip()
+            for quantity in [each for each in _WIND if is_named(plain, each)][:1]:
+                names[index] = plain
+                heights.setdefault(quantity, {})[index] = float(at[1] or at[2])
+    if not heights:
         return table, ''
-    of_speed = heights.get('wind_speed') or heights[next(iter(heights))]
-    first = min(of_speed.values())
+    known = set[float]()
+    lowest = {quantity: min(of_one.values()) for quantity, of_one in heights.items()}
+    for quantity, of_one in heights.items():
+        known |= {*of_one.values()}
+        for index, height in of_one.items():
+            names[index] = names[index] if height == lowest[quantity] else ''
+    first = lowest.get('wind_speed', next(iter(lowest.values())))
     others = sorted(known - {first})
     more = f'; there is one at {", ".join(f"{each:g}" for each in others)} m' if others else ''
     note = '' if known == {_USUAL} else f'the wind at {first:g} m{more}'
     return replace(table, columns=tuple(names)), note
 
 
-def _repeated(table: TextTable, used: Column, quantity: str) -> list[str]:
+def _direction(
+    table: TextTable, speed: Column | None, given: float | None
+) -> tuple[Column | float | None, str]:
+    """Column of the direction, else the given one, and whether it is ``from`` or ``to`` there."""
+    quantity = 'wind_direction' if table.find_all('wind_direction') else 'wind_to'
+    for place in table.find_all(quantity):
+        if speed is None or place != speed.index:
+            unit = table.unit_of(place, 'wind_direction') or maker_of(table).get('direction')
+            factor = table.known_factor('angle', unit or 'deg')
+            return Column(place, factor), 'to' if quantity == 'wind_to' else 'from'
+    return given, 'from'
+
+
+def _repeated(table: TextTable, used: Column, quantity: str) -> str:
     """Return a note on a used column of which there are more with names as good."""
     name = table.columns[used.index]
     rank = rank_of(name, quantity)
     alike = [each for each in table.columns if each and rank_of(each, quantity) == rank]
     if len(alike) < 2 or rank is None:
-        return []
+        return ''
     names = list(dict.fromkeys(alike))
     which = 'the first' if len(names) == 1 else name
-    return [f'of {len(alike)} columns {", ".join(names)} {which} is read']
+    return f'of {len(alike)} columns {", ".join(names)} {which} is read'
 
 
 def _components(table: TextTable, names: tuple[str, ...] | None) -> list[Column]:
@@ -179,43 +177,39 @@ def _components(table: TextTable, names: tuple[str, ...] | None) -> list[Column]
     return [column for column in found if column is not None]
 
 
-def _refuse_missing(table: TextTable, time: bool, speed: bool, direction: bool) -> None:
-    """Raise a `FormatError` that names the missing columns."""
-    wanted = {
-        'the time': (time, 'time'),
-        'the speed': (speed, 'speed [m/s]'),
-        'the direction': (direction, 'direction [deg]'),
-    }
-    missing = {what: name for what, (is_there, name) in wanted.items() if not is_there}
+def _refuse_missing(table: TextTable, *found: object) -> None:
+    """Raise a `FormatError` that names the columns of `_WANTED` that are None."""
+    missing = [each for each, column in zip(_WANTED, found, strict=True) if column is None]
     if not missing:
         return
     what = f'no column for {" and none for ".join(missing)} among {", ".join(table.columns[:20])}'
-    cure = f'call it {" and ".join(missing.values())} in the header'
+    cure = f'call it {" and ".join(_WANTED[each] for each in missing)} in the header'
     if 'the speed' in missing:
         cure += ', or name the components: --wind-option columns=u,v'
-    elif list(missing) == ['the direction']:
+    elif missing == ['the direction']:
         cure += ', or give one for all rows: --wind-option direction=270'
     raise table.error(what, cure=cure)
 
 
-def _doubt(table: TextTable, direction: Column | float) -> list[str]:
+def _doubt(table: TextTable, direction: Column | float) -> str:
     """Return a note on directions without a unit that may be radians."""
     if isinstance(direction, float) or table.unit_of(direction.index, 'wind_direction'):
-        return []
-    values = np.abs(table.values([direction.index]))
-    if not np.isfinite(values).any() or np.nanmax(values) > _CIRCLE or not np.nanmax(values % 1.0):
-        return []
+        return ''
+    values = table.values([direction.index])
+    known = np.abs(values[np.isfinite(values)])
+    if (known > _CIRCLE).any() or not (known % 1.0).any():
+        return ''
     name = table.columns[direction.index]
-    return [f'no {name} is above 6.3: taken in degrees; call it {name} [rad] if it is']
+    return f'no {name} is above 6.3: taken in degrees; call it {name} [rad] if it is'
 
 
 def _fill(
-    rows: WindRows, table: TextTable, winds: RowWinds, stored: Ints, seconds: Floats,
+    rows: WindRows, table: TextTable, winds: Floats, stored: Ints, seconds: Floats,
     unit: str | None,
 ) -> None:  # fmt: skip
     """Put good rows, in the order of their times, into a record's rows, with their gusts."""
     rows.number = array('q', [table.numbers[row] for row in stored.tolist()])
-    rows.velocity = array('d', winds.velocity[stored].ravel())
+    rows.velocity = array('d', winds.ravel())
     rows.time = array('d', seconds)
     speeds = table.find_all('wind_speed')[:1]
     for gust in [each for each in table.find_all('gust') if each not in speeds][:1]:

@@ -33,7 +33,7 @@ def number(value: Any) -> float | None:
 def bearing_of(value: Any) -> float | None:
     """Bearing [rad] from degrees, or from a point of the compass such as NNW."""
     degrees = number(value)
-    if degrees is None and isinstance(value, str) and value.strip():
+    if isinstance(value, str):
         degrees = float(degrees_of([value.strip()[:_LONGEST]])[0])
     return None if degrees is None or not 0.0 <= degrees <= 360.0 else math.radians(degrees)
 

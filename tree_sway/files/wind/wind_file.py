@@ -8,7 +8,6 @@ The content decides before the suffix.
 
 from __future__ import annotations
 
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +45,7 @@ def read_wind(path: Path, /, format: str | None = None, **options: Any) -> WindR
 
     """
     if str(path) in EXAMPLES and not path.exists():
-        path = Path(str(files('tree_sway.files.wind').joinpath(f'{path}.csv')))
+        path = Path(__file__).with_name(f'{path}.csv')
     elif not path.exists() and (guess := nearest(str(path), EXAMPLES)):
         raise FormatError('no such file', cure=guess)
     with expected(path, 'wind'):

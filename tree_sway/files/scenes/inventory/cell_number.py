@@ -16,7 +16,7 @@ _GROUPED = re.compile(
     r'(\d{1,3}(?:[.,]\d{3}){2,}))(?![\d.,])'
 )
 """A number of thousands, ``1.234,5``, ``1,234.5`` or ``1.234.567``."""
-_UNIT = re.compile(r"[\d\s]([a-zA-Z]+\.?|'|\")\s*$")
+_UNIT = re.compile(r"[\d\s]([a-zA-Z]+|'|\")\.?\s*$")
 _AND = r'[+;&|]|,\s|\s(?:and|und|et|y|en|e|och|og)\s'
 _SEVERAL = re.compile(rf'\d(?:\D{{0,4}}?(?:{_AND})|\s)\s*\d')
 _TIMES = re.compile(r'(?<![\d.,])([2-9])\s*[x×*@]\s*(\d+(?:[.,]\d+)?)')
@@ -54,7 +54,7 @@ def cell_number(text: str) -> tuple[float, str] | None:
     if not 1 <= len(numbers) <= 2 or (text.strip()[:1] in '-−' and len(numbers) == 1):
         return None
     found = _UNIT.search(text)
-    unit = found[1].rstrip('.') if found and unit_factor('length', found[1].rstrip('.')) else ''
+    unit = found[1] if found and unit_factor('length', found[1]) else ''
     words = re.findall(r'[^\W\d_]+', text.lower())
     if any(word not in _WORDS and unit_factor('length', word) is None for word in words):
         return None

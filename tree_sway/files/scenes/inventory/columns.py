@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.column_names import rank_of, unit_factor, unit_known
+from tree_sway.files.column_names import is_named, unit_factor, unit_known
 from tree_sway.files.scenes.inventory.cell_number import cell_number, stems_number
 from tree_sway.files.table_file import are_nines, Column, TextTable
 
@@ -36,6 +36,8 @@ class InventoryColumns:
         self.n_rows = len(table.texts)
         self.used = set[int]()
         self.notes = list[str]()
+        self.is_in_states = False
+        """Whether all places are known to be in the United States."""
         self.has_inches = False
         """Whether stems are in inches, so that heights may be in feet."""
         self.is_kept: NDArray[np.bool_] = np.ones(self.n_rows, dtype=np.bool_)
@@ -67,8 +69,8 @@ class InventoryColumns:
 
     def numbered(self, quantity: str) -> list[int]:
         """Places of columns of the stems of a tree, as ``DBH 1 (cm)`` and ``DBH 2 (cm)``."""
-        names = [_NUMBERED.sub('', name) for name in self.table.columns]
-        return [i for i, name in enumerate(names) if rank_of(name, quantity) is not None]
+        names = enumerate(self.table.columns)
+        return [i for i, name in names if is_named(_NUMBERED.sub('', name), quantity)]
 
     def index_of(self, quantity: str) -> int | None:
         """Place of the first column of a quantity; None without one."""
@@ -99,7 +101,7 @@ class InventoryColumns:
     def texts(self, index: int) -> list[str]:
         """Texts of a column."""
         self.used.add(index)
-        return self.table.cells(index, range(self.n_rows))
+        return self.table.cells(index, self.table.rows)
 
     def numbers(self, index: int, *, stems: bool = False, unit: str = '') -> tuple[Floats, str]:
         """
@@ -133,7 +135,7 @@ class InventoryColumns:
 
     def _drop_nines(self, values: Floats, index: int) -> None:
         """Take ``99``, ``999`` and so on for a missing value where no other is nearly as large."""
-        cells = self.table.cells(index, range(self.n_rows))
+        cells = self.table.cells(index, self.table.rows)
         is_code = are_nines(cells, values)
         if is_code.any():
             name, cell = self.table.columns[index], cells[int(np.argmax(is_code))]

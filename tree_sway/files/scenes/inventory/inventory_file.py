@@ -17,7 +17,7 @@ from tree_sway.files.scenes.inventory.geojson import looks_like_geojson, read_ge
 from tree_sway.files.scenes.inventory.geopackage import is_geopackage, read_geopackage
 from tree_sway.files.scenes.inventory.spreadsheet import read_spreadsheet
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.zipped import tables_in
+from tree_sway.files.zipped import table_in
 
 _HEAD = 60
 _NAME = re.compile(r'"([^"\n]{1,60})"\s*:')
@@ -29,15 +29,14 @@ def inventory_table(path: Path, head: str) -> TextTable:
     """Return the table of an inventory's file; errors are those of its format."""
     if read := _own_reader(path, head):
         return read(path)
-    found = list(tables_in(path))
-    name, lines = next((each for each in found if _is_inventory(each[1])), found[0])
+    name, lines = table_in(path, _is_inventory)
     return PLAIN.read(lines, name)
 
 
 def has_own_format(path: Path, head: str) -> bool:
     """Whether a file is of a format that inventories have and other files of trees have not."""
     if path.suffix.lower() == '.zip':
-        return any(_is_inventory(lines) for _, lines in tables_in(path))
+        return _is_inventory('\n'.join(table_in(path, _is_inventory)[1]))
     return _own_reader(path, head) is not None
 
 
@@ -56,8 +55,8 @@ def _has_records(head: str) -> bool:
     return bool(names) and not missing_columns(table_of_cells(names, [], ''))
 
 
-def _is_inventory(lines: list[str]) -> bool:
-    return lacking_columns('\n'.join(lines[:_HEAD])) == []
+def _is_inventory(head: str) -> bool:
+    return lacking_columns(head) == []
 
 
 def lacking_columns(head: str) -> list[str] | None:
@@ -75,11 +74,3 @@ def missing_columns(table: TextTable) -> list[str]:
         for what, choices in INVENTORY.items()
         if not any(all(map(table.find_all, choice.split())) for choice in choices)
     ]
-
-
-def why_missing(table: TextTable) -> str:
-    """Return which columns of an inventory a table lacks, empty if none or all."""
-    missing = missing_columns(table)
-    if not missing or len(missing) == len(INVENTORY):
-        return ''
-    return f'no column for {" and none for ".join(missing)} among {", ".join(table.columns[:20])}'

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 import math
 import re
 
@@ -42,27 +41,12 @@ _CLOSEST = 0.1
 """Mean distance of trees below which places of `_FEW_DIGITS` are degrees too [m]."""
 
 
-@dataclass(frozen=True)
-class Places:
-    """
-    Places of trees.
-
-    Parameters
-    ----------
-    x, y
-        East and north of each tree [m], (n,); NaN without a place.
-    is_in_states
-        Whether all are in the United States.
-
-    """
-
-    x: Floats
-    y: Floats
-    is_in_states: bool = False
+Places = tuple[Floats, Floats]
+"""East and north of each tree [m], (n,) each; NaN without a place."""
 
 
 def places_of(columns: InventoryColumns) -> Places | None:
-    """Return the places of all rows; None without columns of them."""
+    """Return the places of all rows, and note whether they are in the United States; or None."""
     by_degrees = columns.find('latitude', 'longitude')
     by_metres = columns.find('x', 'y')
     if by_degrees is not None:
@@ -85,7 +69,7 @@ def _degrees(columns: InventoryColumns, index: int) -> Floats:
     parts = [_DMS.fullmatch(text.strip()) for text in columns.texts(index)]
     if not any(parts):
         return columns.numbers(index)[0]
-    return np.array([math.nan if each is None else _decimal(each) for each in parts])
+    return np.array([each and _decimal(each) for each in parts], dtype=np.float64)
 
 
 def _decimal(parts: re.Match[str]) -> float:
@@ -120,8 +104,7 @@ def _of_map(columns: InventoryColumns, east: Column, north: Column) -> Places:
 
 def _in_range(values: Floats, most: float) -> bool:
     """Whether all known values, of which there is one, are at most some size."""
-    known = np.abs(values[np.isfinite(values)])
-    return len(known) > 0 and float(known.max()) <= most
+    return 0.0 <= float(np.nanmax(np.abs(values), initial=-1.0)) <= most
 
 
 def _digits(columns: InventoryColumns, index: int) -> float:
@@ -135,28 +118,21 @@ def _digits(columns: InventoryColumns, index: int) -> float:
 
 def _distance(x: Floats, y: Floats) -> float:
     """Mean distance of places, each of which has its share of their rectangle."""
-    is_known = np.isfinite(x) & np.isfinite(y)
-    count = int(is_known.sum())
-    if count < 2:
-        return math.inf
-    wide = max(float(np.ptp(x[is_known])), float(np.ptp(y[is_known])))
-    return wide / math.sqrt(count)
+    known = np.stack([x, y])[:, np.isfinite(x + y)]
+    count = known.shape[1]
+    return float(np.ptp(known, axis=1).max()) / math.sqrt(count) if count > 1 else math.inf
 
 
 def _of_geometries(columns: InventoryColumns, index: int) -> Places:
     """Read a column of points, in degrees or in metres by the size of most."""
-    east = np.full(columns.n_rows, np.nan)
-    north = np.full(columns.n_rows, np.nan)
-    for row, cell in enumerate(columns.texts(index)):
-        point = point_of_cell(cell)
-        if point is not None:
-            east[row] = point.east
-            north[row] = point.north
-        elif cell:
+    cells = columns.texts(index)
+    points = [point_of_cell(cell) for cell in cells]
+    for row, cell in enumerate(cells):
+        if cell and points[row] is None:
             columns.leave_out(row, 'no place', f"'{cell[:40]}' is no latitude and longitude")
-    known = np.abs(east[np.isfinite(east)])
-    is_in_metres = len(known) > 0 and float(np.median(known)) > _MOST_LONGITUDE
-    if is_in_metres:
+    east, north = np.array([point or (math.nan, math.nan) for point in points]).T
+    far = np.abs(east[np.isfinite(east)]) > _MOST_LONGITUDE
+    if 2 * np.count_nonzero(far) > len(far):
         return _near_origin(columns, east, north)
     return _of_degrees(columns, north, east)
 
@@ -167,7 +143,7 @@ def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) 
     is_known &= _is_fixed(is_known, latitude, longitude, 1.0)
     if not is_known.any():
         nowhere = np.full(len(latitude), np.nan)
-        return Places(nowhere, nowhere)
+        return nowhere, nowhere
     columns.note('east and north are counted from the first tree')
     first = int(np.argmax(is_known))
     parallel_radius = _EARTH_RADIUS * math.cos(math.radians(latitude[first]))
@@ -175,8 +151,8 @@ def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) 
     east -= 360.0 * np.round(east / 360.0)  # the short way round
     x = parallel_radius * np.radians(east)
     y = _EARTH_RADIUS * np.radians(latitude - latitude[first])
-    is_in_states = bool(are_in_states(latitude, longitude)[is_known].all())
-    return Places(np.where(is_known, x, np.nan), np.where(is_known, y, np.nan), is_in_states)
+    columns.is_in_states = bool(are_in_states(latitude, longitude)[is_known].all())
+    return np.where(is_known, x, np.nan), np.where(is_known, y, np.nan)
 
 
 def _is_fixed(known: NDArray[np.bool_], x: Floats, y: Floats, far: float) -> NDArray[np.bool_]:
@@ -194,9 +170,9 @@ def _near_origin(columns: InventoryColumns, x: Floats, y: Floats) -> Places:
     y = np.where(is_known, y, np.nan)
     farthest = np.nanmax(np.abs([x, y]), initial=0.0)
     if farthest <= _FAR:
-        return Places(x, y)
+        return x, y
     east = float(np.floor(np.nanmin(x)))
     north = float(np.floor(np.nanmin(y)))
     if east or north:
         columns.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
-    return Places(x - east, y - north)
+    return x - east, y - north

@@ -14,10 +14,10 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.species import Species
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import folded
+from tree_sway.files.column_names import folded, INVENTORY
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
-from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES, why_missing
-from tree_sway.files.scenes.inventory.places import Places, places_of
+from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES
+from tree_sway.files.scenes.inventory.places import places_of
 from tree_sway.files.scenes.inventory.sizes import diameters_of, fill_heights, heights_of
 from tree_sway.files.scenes.inventory.species_names import species_of_rows
 from tree_sway.files.table_file import TextTable
@@ -29,15 +29,15 @@ _DEAD = re.compile(
     r'abattu|souche|muerto|seco|tocón|vacía|vacío|dood|död)\b',
     re.IGNORECASE,
 )
-
 _SAYS_DEAD = {
-    'alive': ('false', 'no', 'non', '0', 'dead'),
-    'dead': ('true', 'yes', 'oui', 'si', '1', 'dead'),
+    'status': _DEAD,
+    'alive': re.compile('^(false|no|non|0|dead)$', re.IGNORECASE),
+    'dead': re.compile('^(true|yes|oui|si|1|dead)$', re.IGNORECASE),
 }
-"""Cells of a column of living or of dead trees that say that one is dead."""
+"""Cells of a column of the state of trees, of living or of dead ones that say that one is dead."""
 _CODES = (
-    ('status', {'A', 'AB', 'AS', 'D', 'G', 'M', 'P', 'L', ''}, {'A', 'L'}, 'D'),
-    ('statuscd', {'0', '1', '2', '3', ''}, {'1'}, '23'),
+    ('status', 'A AB AS D G M P L', 'A L', 'D'),
+    ('statuscd', '0 1 2 3', '1', '2 3'),
 )
 """
 Columns of codes: all of them, those of living trees, and of trees that are dead or gone.
@@ -114,31 +114,29 @@ def inventory_of(
     column, or if no row is left.
     """
     given = given or {}
-    missing = [each for each in missing_columns(table) if each != SPECIES]
-    if not needs_place:
-        missing = [each for each in missing if 'place' not in each]
-    if missing:
+    missing = missing_columns(table)
+    if any(each != SPECIES and (needs_place or 'place' not in each) for each in missing):
+        what = f'no column for {" and none for ".join(missing)} among '
+        what += ', '.join(table.columns[:20])
         cure = 'give a row for each tree, with place, species, and height or dbh'
         cure = f'name them so in the header, if it is an inventory: {cure} (doc/trees.md)'
-        raise table.error(why_missing(table) or 'no column of an inventory', cure=cure)
+        is_one = len(missing) < len(INVENTORY)
+        raise table.error(what if is_one else 'no column of an inventory', cure=cure)
     columns = InventoryColumns(table)
     found = places_of(columns)
-    zero = np.zeros(columns.n_rows)
-    places = Places(zero, zero) if found is None else found
+    x, y = np.zeros((2, columns.n_rows)) if found is None else found
     _leave_out_dead(columns)
-    names, wood = species_of_rows(columns, given, is_in_states=places.is_in_states)
+    names, wood = species_of_rows(columns, given)
     keys = [wood[each].key if each in wood else each for each in names]
-    diameter = diameters_of(columns, places.is_in_states)
-    height = heights_of(columns, diameter, places.is_in_states)
-    for row in np.flatnonzero(~np.isfinite(places.x + places.y)).tolist():
+    diameter = diameters_of(columns)
+    height = heights_of(columns, diameter)
+    for row in np.flatnonzero(~np.isfinite(x + y)).tolist():
         columns.leave_out(row, 'no place', _why_no_place(columns, row))
-    height = np.full(columns.n_rows, np.nan) if height is None else height
     is_found = fill_heights(columns, height, diameter, keys)
     kept = np.flatnonzero(columns.is_kept).tolist()
     columns.note(columns.why_left_out())
-    stems = np.full(columns.n_rows, np.nan) if diameter is None else diameter
     if found is not None:
-        columns.note(_double(columns, kept, [places.x, places.y, names, height, stems]))
+        columns.note(_double(columns, kept, [x, y, names, height, diameter]))
     if not kept:
         raise FormatError(
             f'no tree is left: {columns.why_left_out() or "no row"}',
@@ -162,12 +160,12 @@ def inventory_of(
         tuple(tree_names),
         of_kept(names),
         wood,
-        places.x[kept],
-        places.y[kept],
+        x[kept],
+        y[kept],
         np.nan_to_num(z[kept]),
         yaw[kept],
         height[kept],
-        stems[kept],
+        diameter[kept],
         of_kept(is_found),
         tuple(text or None for text in of_kept(models)),
         of_kept(exposures),
@@ -176,21 +174,21 @@ def inventory_of(
 
 
 def _leave_out_dead(columns: InventoryColumns) -> None:
-    for index in columns.table.find_all('status'):
-        name, texts = columns.table.columns[index], columns.texts(index)
-        gone = ''.join(
-            codes
-            for each, known, alive, codes in _CODES
-            if each == folded(name) and known >= {*texts} and alive & {*texts}
-        )
-        for row, text in enumerate(texts):
-            if _DEAD.search(text) or (text and text in gone):
-                columns.leave_out(row, 'dead or gone', columns.told(index, row))
-    for quantity, words in _SAYS_DEAD.items():
+    for quantity, says_dead in _SAYS_DEAD.items():
         for index in columns.table.find_all(quantity):
-            for row, text in enumerate(columns.texts(index)):
-                if text.lower() in words:
+            texts = columns.texts(index)
+            gone = _codes_of_gone(folded(columns.table.columns[index]), {*texts})
+            for row, text in enumerate(texts):
+                if says_dead.search(text) or text in gone:
                     columns.leave_out(row, 'dead or gone', columns.told(index, row))
+
+
+def _codes_of_gone(column: str, texts: set[str]) -> list[str]:
+    """Codes of dead trees in a column whose cells are codes, some of them of living trees."""
+    for name, known, alive, gone in _CODES:
+        if name == column and texts <= {'', *known.split()} and texts & {*alive.split()}:
+            return gone.split()
+    return []
 
 
 def _double(columns: InventoryColumns, kept: list[int], cells: Sequence[Any]) -> str:

@@ -42,9 +42,9 @@ _MM = 0.001
 _SAID = {1.0: 'm', _CM: 'cm', _MM: 'mm', _INCH: 'inches', _FOOT: 'feet'}
 
 
-def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None:
-    """Diameters at breast height [m], NaN without one; None if no column has them."""
-    found: Floats | None = None
+def diameters_of(columns: InventoryColumns) -> Floats:
+    """Diameters at breast height [m], NaN without one."""
+    found = np.full(columns.n_rows, np.nan)
     for quantity, over in (('diameter', 1.0), ('girth', math.pi)):
         stems = columns.table.find_all(quantity)[:1] or columns.numbered(quantity)
         if not stems:
@@ -54,16 +54,16 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
         values, unit = columns.numbers(index, stems=True, unit=told or '')
         for each in stems[1:]:
             values = np.hypot(values, np.nan_to_num(columns.numbers(each, unit=unit)[0]))
-        factor = unit_factor('length', unit) if unit else None
+        factor = unit_factor('length', unit)
         if factor is None:
-            factor, why = _stem_unit(values / over, columns, is_in_states)
+            factor, why = _stem_unit(values / over, columns)
             name = columns.table.columns[index]
             columns.note(f'{name} is taken as {_SAID[factor]}{why}')
         columns.has_inches |= factor == _INCH
         own = values * factor / over
         _note_impossible(columns, index, own)
         own[~((own > 0.0) & (own <= _THICKEST))] = np.nan
-        found = own if found is None else np.where(np.isnan(found), own, found)
+        found = np.where(np.isnan(found), own, found)
     return found
 
 
@@ -79,7 +79,7 @@ def _note_impossible(columns: InventoryColumns, index: int, diameter: Floats) ->
     )
 
 
-def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) -> tuple[float, str]:
+def _stem_unit(values: Floats, columns: InventoryColumns) -> tuple[float, str]:
     """Choose the unit of diameters that have none, and say why if it is inches."""
     positive = values[values > 0.0]
     middle = _middle(values)
@@ -89,13 +89,13 @@ def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) ->
         return 1.0, ''
     if middle > 250.0:
         return _MM, ''
-    if is_in_states:
+    if columns.is_in_states:
         return _INCH, ', as the trees stand in the United States'
-    index = _height_column(columns)
-    if index is None:
+    heights = _read_heights(columns)
+    if heights is None:
         return _CM, ''
-    height, unit = columns.numbers(index, unit=columns.table.unit_of(index, 'height'))
-    factor = unit_factor('length', unit) if unit else None
+    _, height, unit = heights
+    factor = unit_factor('length', unit)
     if factor == _FOOT:
         return _INCH, ', as heights are in feet'
     ratio = _slenderness(height * (factor or 1.0), values * _CM)
@@ -120,41 +120,42 @@ def _slenderness(height: Floats, diameter: Floats, quantile: float = 0.5) -> flo
     return float(np.quantile(height[known] / diameter[known], quantile)) if known.any() else 0.0
 
 
-def _usual_slenderness(diameter: Floats | None) -> float:
+def _usual_slenderness(diameter: Floats) -> float:
     """
     Return the usual height over diameter of city trees with these stems.
 
     Trees in the open go on to thicken when they hardly grow higher: from middling stems on, the
     height goes as the square root of the diameter.
     """
-    known = np.empty(0) if diameter is None else diameter[np.isfinite(diameter)]
-    if not len(known):
-        return _MIDDLING
-    return _MIDDLING * math.sqrt(min(1.0, _MIDDLING_STEM / float(np.median(known))))
+    return _MIDDLING * math.sqrt(_MIDDLING_STEM / max(_MIDDLING_STEM, _middle(diameter)))
 
 
-def _height_column(columns: InventoryColumns) -> int | None:
-    """Column of heights whose name comes first, of those that have a number."""
-    found = columns.table.find_all('height')
-    filled = (index for index in found if np.isfinite(columns.numbers(index)[0]).any())
-    return next(filled, found[0] if found else None)
+def _read_heights(columns: InventoryColumns) -> tuple[int, Floats, str] | None:
+    """Column of heights whose name comes first, of those with a number; its numbers and unit."""
+    first = None
+    for index in columns.table.find_all('height'):
+        unit = columns.table.unit_of(index, 'height')
+        read = index, *columns.numbers(index, unit=unit)
+        if np.isfinite(read[1]).any():
+            return read
+        first = first or read
+    return first
 
 
-def heights_of(
-    columns: InventoryColumns, diameter: Floats | None, is_in_states: bool = False
-) -> Floats | None:
-    """Heights [m], NaN without one; None if no column has them."""
-    index = _height_column(columns)
-    if index is None:
-        return None
-    values, unit = columns.numbers(index, unit=columns.table.unit_of(index, 'height'))
-    factor = unit_factor('length', unit) if unit else None
+def heights_of(columns: InventoryColumns, diameter: Floats) -> Floats:
+    """Heights [m], NaN without one."""
+    heights = _read_heights(columns)
+    if heights is None:
+        return np.full(columns.n_rows, np.nan)
+    index, values, unit = heights
+    factor = unit_factor('length', unit)
     name = columns.table.columns[index]
+    is_in_states = columns.is_in_states
     if factor is None:
         factor = 1.0
         if unit:
             columns.note(f"{name}: '{unit[:40]}' is no known unit")
-        ratio = 0.0 if diameter is None else _slenderness(values, diameter)
+        ratio = _slenderness(values, diameter)
         # In the United States, and beside inches, heights are in feet or in metres.
         may_be_feet = is_in_states or columns.has_inches
         most = _usual_slenderness(diameter) / math.sqrt(_FOOT) if may_be_feet else _SLENDER[1]
@@ -166,7 +167,7 @@ def heights_of(
             why = 'as the trees stand in the United States' if is_in_states else 'by their size'
             columns.note(f'{name} is taken as feet, {why}; call it {name} [m] if it is')
     height = values * factor
-    ratio = 0.0 if diameter is None else _slenderness(height, diameter)
+    ratio = _slenderness(height, diameter)
     if unit and ratio > _THINNEST:
         raise columns.table.error(
             f'stems in {name} are {ratio:.0f} times as high as they are thick: are height and '
@@ -183,22 +184,21 @@ def heights_of(
 
 
 def fill_heights(
-    columns: InventoryColumns, height: Floats, diameter: Floats | None, keys: list[str]
+    columns: InventoryColumns, height: Floats, diameter: Floats, keys: list[str]
 ) -> list[bool]:
     """
     Give each kept row without a height that of a grown tree of its stem, in place.
 
     Returns whether a row's height is such. Rows without a stem as well are left out.
     """
-    stems = np.full(len(height), np.nan) if diameter is None else diameter
     missing = np.isnan(height) & columns.is_kept
-    is_found = missing & np.isfinite(stems)
+    is_found = missing & np.isfinite(diameter)
     for row in np.flatnonzero(missing & ~is_found).tolist():
         columns.leave_out(row, 'no height and no stem', _why_no_size(columns, row))
     grown = cache(height_of_stem)
     rows = np.flatnonzero(is_found).tolist()
     for row in rows:
-        height[row] = grown(keys[row], float(stems[row]))
+        height[row] = grown(keys[row], float(diameter[row]))
     n_kept = int(columns.is_kept.sum())
     if rows:
         which = 'heights' if len(rows) == n_kept else f'{len(rows)} of {n_kept} heights'
@@ -211,10 +211,10 @@ def fill_heights(
 
 def _unread_height(columns: InventoryColumns, rows: list[int]) -> str:
     """Tell the first height with digits that is no number, such as a date; empty without one."""
-    index = _height_column(columns)
-    if index is None:
+    heights = _read_heights(columns)
+    if heights is None:
         return ''
-    numbers, _ = columns.numbers(index)
+    index, numbers, _ = heights
     for row in rows:
         if np.isnan(numbers[row]) and any(map(str.isdigit, columns.cell(index, row))):
             return f' that can be read; {columns.line(row)}: {columns.told(index, row)}'

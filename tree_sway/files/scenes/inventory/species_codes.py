@@ -57,24 +57,19 @@ def has_codes(cells: Sequence[str]) -> bool:
     return bool(filled) and all(_CODE.fullmatch(cell) for cell in filled)
 
 
-def list_of(column: str, codes: Sequence[str], *, is_in_states: bool) -> str | None:
+def list_of(column: str, codes: Sequence[str], *, is_in_states: bool) -> str:
     """
-    Return the list, `FIA` or `ICP`, of the codes of a column; None if it is neither.
+    Return the list, `FIA` or `ICP`, of the codes of a column; empty if it is neither.
 
     The name of the column decides; under any other name, codes in the United States are of FIA.
     """
     name = folded(column)
-    if _FIA_COLUMN.search(name):
-        found = FIA
-    elif name.startswith(_ICP_COLUMNS):
-        found = ICP
-    elif is_in_states:
-        found = FIA
-    else:
-        return None
+    is_fia = _FIA_COLUMN.search(name) is not None
+    is_icp = not is_fia and name.startswith(_ICP_COLUMNS)
+    found = ICP if is_icp else FIA if is_fia or is_in_states else ''
     known = [name_of(code, found) for code in codes if code]
     n_known = sum(bool(each) for each in known)
-    return found if n_known >= _LEAST_KNOWN * len(known) else None
+    return found if n_known >= _LEAST_KNOWN * len(known) else ''
 
 
 def name_of(cell: str, list_name: str) -> str:

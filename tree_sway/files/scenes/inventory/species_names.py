@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from functools import cache, partial
 
 from tree_sway.core.species import Species, species_like, species_named
 from tree_sway.errors import SpeciesError
@@ -35,7 +36,7 @@ _TRIED = 50
 
 
 def species_of_rows(
-    columns: InventoryColumns, given: Mapping[str, object], *, is_in_states: bool = False
+    columns: InventoryColumns, given: Mapping[str, object]
 ) -> tuple[list[str], dict[str, Species]]:
     """
     Return the name of each row's species, and the species of each name.
@@ -44,19 +45,15 @@ def species_of_rows(
     epithet in two columns are joined. Names in ``given`` are left as they are. Codes are read by
     `species_codes`, for which it counts whether all trees are in the United States.
     """
-    tables = [
-        _decoded(columns, index, given, is_in_states=is_in_states)
-        for index in columns.table.find_all('species')
-    ]
+    tables = [_decoded(columns, index, given) for index in columns.table.find_all('species')]
     if columns.index_of('genus') is not None:
         pairs = zip(columns.texts_of('genus'), columns.texts_of('epithet'), strict=True)
         tables.append([_joined(*pair) for pair in pairs])
     if not tables and (index := _column_of_names(columns)) is not None:
         tables.append(columns.texts(index))
         columns.note(f'{columns.table.columns[index]} is taken as the species, by its cells')
-    rows = list(zip(*tables, strict=True)) if tables else [('',)] * columns.n_rows
-    chosen = {each: _chosen(each, given) for each in dict.fromkeys(rows)}
-    names = [chosen[each] for each in rows]
+    chosen = cache(partial(_chosen, given=given))
+    names = [*map(chosen, zip(*(tables or [[''] * columns.n_rows]), strict=True))]
     known: dict[str, Species] = {}
     counts = Counter(names)
     notes = []
@@ -69,8 +66,9 @@ def species_of_rows(
         if other := _AMBIGUOUS.get(name.lower().replace('-', '')):
             note = f"'{name}' is taken as {known[name].title}; in {other['where']} it is "
             note += f'{other["meaning"]}: write that if it is'
-        notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})' if note else '')
-    columns.note(*[note for note in notes if note][:_MOST_NOTES])
+        if note:
+            notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})')
+    columns.note(*notes[:_MOST_NOTES])
     return names, known
 
 
@@ -78,7 +76,7 @@ def _column_of_names(columns: InventoryColumns) -> int | None:
     """Column most of whose first cells are names, of species if any has these; None without."""
     shares = list[tuple[float, int]]()
     for index in range(len(columns.table.columns)):
-        cells = columns.table.cells(index, range(min(_TRIED, columns.n_rows)))
+        cells = columns.table.cells(index, columns.table.rows[:_TRIED])
         filled = [cell for cell in cells if cell]
         named = [cell for cell in filled if len(cell) >= _SHORTEST_NAME and cell[0].isalpha()]
         if filled:
@@ -96,9 +94,7 @@ def _specificity(name: str) -> int:
     return 1 if species.key in _GENERAL else 2
 
 
-def _decoded(
-    columns: InventoryColumns, index: int, given: Mapping[str, object], *, is_in_states: bool
-) -> list[str]:
+def _decoded(columns: InventoryColumns, index: int, given: Mapping[str, object]) -> list[str]:
     """Cells of a column, with the names of species in place of codes of a known list."""
     cells = columns.texts(index)
     filled = {cell for cell in cells if cell}
@@ -108,8 +104,8 @@ def _decoded(
     if not has_codes(cells) or any(cell in given for cell in cells):
         return cells
     column = columns.table.columns[index]
-    found = list_of(column, cells, is_in_states=is_in_states)
-    if found is None:
+    found = list_of(column, cells, is_in_states=columns.is_in_states)
+    if not found:
         columns.note(
             f'{column} has codes of an unknown list: name the column SPCD for those of FIA, '
             'code_tree_species for those of ICP Forests'

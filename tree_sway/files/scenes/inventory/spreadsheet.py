@@ -47,9 +47,8 @@ def read_spreadsheet(path: Path) -> TextTable:
         raise FormatError('no sheet with a header and rows')
     # A title, or a sheet of other things, may stand above: the header names species or sizes.
     rows, number = max(tables, key=lambda table: sum(map(is_known, table[0][table[1]])))
-    below = [row for row in rows[number + 1 :] if any(row)]
-    lines = [n for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)]
-    return table_of_cells(rows[number], below, str(path), lines)
+    below = {n: row for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)}
+    return table_of_cells(rows[number], below.values(), str(path), [*below])
 
 
 def _rows_of_spreadsheet(path: str) -> Arrays:

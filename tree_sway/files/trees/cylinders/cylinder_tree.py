@@ -10,7 +10,6 @@ Each step reports its changes in a note.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,7 @@ from tree_sway.core.tree import check_numbers, checked_order, tree_from_segments
 from tree_sway.errors import FormatError
 from tree_sway.files.trees.cylinders.coarse_positions import coarse_positions
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.cylinders.joining import branch_keys, join_loose_branches
+from tree_sway.files.trees.cylinders.joining import branch_keys, with_joined_branches
 from tree_sway.files.trees.cylinders.zero_length import without_zero_length
 from tree_sway.files.trees.imported_tree import TreeFile
 
@@ -32,8 +31,6 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
     Raises a `TreeError` for an impossible one: no root, a cycle, several trees, values that are
     not finite.
     """
-    source = str(path)
-    notes = list(cylinders.notes)
     species = species_named('broadleaf')
     if len(cylinders.start) == 0:
         raise FormatError('no cylinders')
@@ -41,20 +38,13 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
     check_numbers(numbers, cylinders.labels)
     faults = coarse_positions(cylinders.start)
     order = checked_order(cylinders.parent, cylinders.labels)
-    if (joined := join_loose_branches(cylinders, order)) is not None:
-        cylinders = replace(cylinders, parent=joined.parent)
-        order = checked_order(cylinders.parent, cylinders.labels)
-        notes.append(
-            f'{joined.loose} branches had no parent and were joined to the nearest cylinder, '
-            f'at most {joined.distance:.3g} m away'
-        )
-    count = len(cylinders.start)
-    cylinders = without_zero_length(cylinders, order)
-    if len(cylinders.start) < count:
-        notes.append(f'{count - len(cylinders.start)} cylinders of zero length were left out')
+    joined = with_joined_branches(cylinders, order)
+    if joined is not cylinders:
+        order = checked_order(joined.parent, joined.labels)
+    cylinders = without_zero_length(joined, order)
     tree = tree_from_segments(
         cylinders.start, cylinders.end, cylinders.diameter, parent=cylinders.parent,
         branch=branch_keys(cylinders), labels=cylinders.labels, name=cylinders.name or path.stem,
         species=species.key,
     )  # fmt: skip
-    return TreeFile(tree, species, source, tuple(notes), faults)
+    return TreeFile(tree, species, str(path), cylinders.notes, faults)

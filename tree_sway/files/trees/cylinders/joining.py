@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,17 +19,9 @@ _MAX_LOOSE_VOLUME = 0.2
 """Share of the stem's volume above which a loose part is a separate tree."""
 
 
-class JoinedBranches(NamedTuple):
-    """Parents after loose branches were joined, number of these, and largest distance [m]."""
-
-    parent: Ints
-    loose: int
-    distance: float
-
-
-def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | None:
+def with_joined_branches(cylinders: Cylinders, order: Ints) -> Cylinders:
     """
-    Join branches without a parent to the nearest cylinder of the stem; None if there are none.
+    Join branches without a parent to the nearest cylinder of the stem, with a note.
 
     A `TreeError` reports a loose part so large that it is a separate tree. The order has parents
     first.
@@ -37,7 +29,7 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
     parent = cylinders.parent
     roots = np.flatnonzero(parent == -1)
     if len(roots) <= 1:
-        return None
+        return cylinders
     root_of = np.empty(len(parent), dtype=np.int64)
     for index in order:
         root_of[index] = index if parent[index] < 0 else root_of[parent[index]]
@@ -61,7 +53,11 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
         )
         joined[index] = on_stem[nearest]
         farthest = max(farthest, distance)
-    return JoinedBranches(joined, len(loose), farthest)
+    note = (
+        f'{len(loose)} branches had no parent and were joined to the nearest cylinder, at most '
+        f'{farthest:.3g} m away'
+    )
+    return replace(cylinders, parent=joined, notes=(*cylinders.notes, note))
 
 
 def branch_keys(cylinders: Cylinders) -> Ints | None:

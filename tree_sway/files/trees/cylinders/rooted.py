@@ -57,15 +57,13 @@ def cylinders_of_edges(point: Floats, edges: Ints, radius: Floats, *, of_nodes: 
         )
     root = inside[np.argmin(point[inside, 2])]
     order, before = breadth_first_order(graph, root, directed=False)
-    place = np.full(n + 1, -1)  # with one for the parent of the root
-    place[order] = np.arange(len(order))
     if not of_nodes:
         own = np.zeros(n)
         own[np.where(before[edges[:, 0]] == edges[:, 1], edges[:, 0], edges[:, 1])] = radius
         radius = own
-    parent = place[np.maximum(before[order], -1)]
-    labels = [f'node {number}' for number in order.tolist()]
-    made = cylinders_of_nodes(point[order], 2.0 * radius[order], parent, labels, cones=of_nodes)
+    parent = np.maximum(before, -1)
+    labels = [f'node {number}' for number in range(n)]
+    made = cylinders_of_nodes(order, point, 2.0 * radius, parent, labels, cones=of_nodes)
     notes = ['the tree begins at its lowest node']
     if len(inside) < n:
         notes.append(f'{n - len(inside)} nodes hang on other parts and are left out')

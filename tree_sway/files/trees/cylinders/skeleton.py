@@ -12,7 +12,7 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 
 
 def cylinders_of_nodes(
-    point: Floats, diameter: Floats, parent: Ints, labels: list[str], *, cones: bool
+    rows: Ints, point: Floats, diameter: Floats, parent: Ints, labels: list[str], *, cones: bool
 ) -> Cylinders:
     """
     Make the segments of a tree with one root: one from its parent to each node but the root.
@@ -22,6 +22,8 @@ def cylinders_of_nodes(
 
     Parameters
     ----------
+    rows
+        Nodes of the tree among all of the file, the root first.
     point, diameter
         Positions (n, 3) and diameters (n,) of the nodes in [m].
     parent
@@ -37,7 +39,7 @@ def cylinders_of_nodes(
         A root without other nodes.
 
     """
-    outer = np.flatnonzero(parent >= 0)
+    outer = rows[parent[rows] >= 0]
     inner = parent[outer]
     number = np.full(len(parent), -1, dtype=np.int64)
     number[outer] = np.arange(len(outer))
@@ -47,12 +49,12 @@ def cylinders_of_nodes(
     if len(roots) == 0:
         raise FormatError(
             'a root without other nodes',
-            where=labels[0],
+            where=labels[rows[0]],
             cure='let at least one node hang on the root',
         )
     stem = roots[np.argmax(diameter[outer][roots])]
     above[roots[roots != stem]] = stem
     return Cylinders(
-        point[inner], point[outer], np.stack([base, diameter[outer]], axis=1), above, None,
+        point[inner], point[outer], np.column_stack([base, diameter[outer]]), above, None,
         [labels[index] for index in outer],
     )  # fmt: skip

@@ -17,10 +17,10 @@ _SHORTEST = 1e-6
 
 def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
     """
-    Return the cylinders of one tree that have a length; children of others go to their parent.
+    Return the cylinders of one tree that have a length; a note tells how many have none.
 
-    The order has parents first. A branch continues through a cylinder that is left out; where that
-    is the root, its thickest child replaces it.
+    Children of these go to their parent, and a branch continues through one that is left out;
+    where that is the root, its thickest child replaces it. The order has parents first.
     """
     keep = np.linalg.norm(cylinders.end - cylinders.start, axis=1) >= _SHORTEST
     if keep.all() or not keep.any():
@@ -39,6 +39,7 @@ def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
     number = np.cumsum(keep) - 1
     rows = np.flatnonzero(keep)
     above = parent[rows]
+    left_out = f'{np.count_nonzero(~keep)} cylinders of zero length were left out'
     return replace(
         cylinders,
         start=cylinders.start[rows],
@@ -47,4 +48,5 @@ def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
         parent=np.where(above < 0, -1, number[above]),
         continues=None if continues is None else continues[rows],
         labels=[cylinders.labels[index] for index in rows],
+        notes=(*cylinders.notes, left_out),
     )

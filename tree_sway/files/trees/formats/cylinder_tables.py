@@ -19,14 +19,13 @@ Names are compared by their letters and digits alone.
 from __future__ import annotations
 
 from pathlib import Path
-import re
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.tree import first_of_each
-from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.column_names import folded
 from tree_sway.files.file_format import FileFormat, has_columns
 from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_lines
@@ -34,23 +33,10 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.tree_options import FITTED
 
 
-def _names(line: str) -> dict[str, str]:
-    """Names of columns by their letters and digits alone."""
-    return {re.sub(r'[\W_]', '', cell).lower(): cell for cell in re.split('[,;\t]', line)}
-
-
-def _is_named(head: str) -> bool:
-    """Whether the first line names a start, an axis or an end, a radius and a parent."""
-    lines = (line for line in head.splitlines() if line.strip() and not line.startswith('#'))
-    names = _names(next(lines, ''))
-    ends = any({f'{end}{axis}' for axis in 'xyz'} <= names.keys() for end in ('end', 'axis'))
-    return ends and {'startx', 'starty', 'startz', 'radius', 'parent'} <= names.keys()
-
-
 def _read(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of a table."""
     table = parse_table(read_lines(path), str(path))
-    names = {own: each for column in table.columns for own, each in _names(column).items()}
+    names = {folded(column): column for column in table.columns}
 
     def columns(word: str) -> Floats:
         return table.strict([names.get(f'{word}{axis}', word) for axis in 'xyz'])
@@ -65,11 +51,8 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         end = columns('end')
     else:
         end = start + column('length')[:, None] * columns('axis')
-    if not {'id', 'cylid'} & names.keys():
-        rows = [[*table.split(text), str(row)] for row, text in enumerate(table.texts, start=1)]
-        table = table_of_cells([*table.columns, 'id'], rows, str(path), table.numbers)
-    number = names.get('id', names.get('cylid', 'id'))
-    roots = [0, -1] if table.strict([number]).min(initial=1.0) else [-1, 0]
+    number = names.get('id', names.get('cylid', ''))
+    roots = [-1, 0] if number and not table.strict([number]).min(initial=1.0) else [0, -1]
     missing = 'parent_ID' if 'cylid' in names else 'parentID'
     above = names.get('parent', names.get('parentid', missing))
     labels, parent = table.family(number, above, roots, 'cylinder')
@@ -84,7 +67,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         continues = has_parent & (after[parent] == own)
     elif 'branchorder' in names:
         continues = _of_one_order(parent, column('branchorder'), column('growthlength', 'radius'))
-    diameter = 2.0 * np.stack([radius, radius], axis=1)
+    diameter = 2.0 * np.column_stack([radius, radius])
     return (Cylinders(start, end, diameter, parent, continues, labels),)
 
 
@@ -98,4 +81,12 @@ def _of_one_order(parent: Ints, order: Floats, size: Floats) -> NDArray[np.bool_
 ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read, FITTED)
 _OF_FOREST = has_columns('ID', 'parentID', 'startX', 'branchOrder')
 SIMPLEFOREST = FileFormat('simpleforest', (), _OF_FOREST, _read, FITTED)
-NAMED = FileFormat('rtwig', (), _is_named, _read, FITTED)
+_OF_TWIG = has_columns('startX', 'startY', 'startZ', 'radius', 'parent')
+_HAS_END, _HAS_AXIS = has_columns('endX', 'endY', 'endZ'), has_columns('axisX', 'axisY', 'axisZ')
+NAMED = FileFormat(
+    'rtwig',
+    (),
+    lambda head: _OF_TWIG(head) and (_HAS_END(head) or _HAS_AXIS(head)),
+    _read,
+    FITTED,
+)

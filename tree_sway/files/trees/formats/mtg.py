@@ -57,10 +57,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     vertices = _parse(read_lines(path), str(path))
     placed = [vertex for vertex in vertices if vertex.position]
     finest = max((vertex.scale for vertex in placed), default=0)
-    bases: list[_Vertex] = []
-    tips: list[_Vertex] = []
-    parents: list[int] = []
-    continues: list[bool] = []
+    segments: list[tuple[_Vertex, _Vertex, int, bool]] = []
     for vertex in vertices:
         before = _before(vertex)
         parent = vertex.parent
@@ -70,13 +67,12 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
             vertex.diameter = vertex.diameter or parent.diameter
         # Without anything before it, it is the first point of a plant.
         if vertex.scale == finest and vertex.position and before is not None:
-            bases.append(before)
-            tips.append(vertex)
-            parents.append(vertex.segment)
-            continues.append(vertex.edge == '<' and before is parent and vertex.segment >= 0)
-            vertex.segment = len(tips) - 1
-    if not tips:
+            continues = vertex.edge == '<' and before is parent and vertex.segment >= 0
+            segments.append((before, vertex, vertex.segment, continues))
+            vertex.segment = len(segments) - 1
+    if not segments:
         raise FormatError(f'no two vertices with {", ".join(_POSITION)}', cure='digitise the tree')
+    bases, tips, parents, continues_parent = zip(*segments, strict=True)
     start, end = (np.array([each.position for each in nodes]) for nodes in (bases, tips))
     diameter = np.array([[each.diameter for each in nodes] for nodes in (bases, tips)]).T
     note = (
@@ -88,7 +84,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         end,
         np.where(diameter > 0.0, diameter, diameter[:, 1:]),
         np.array(parents),
-        np.array(continues),
+        np.array(continues_parent),
         [each.label for each in tips],
         notes=(note,),
     )

@@ -59,7 +59,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
             cure='remove it and its edges',
         )
     edges = tables['edge'][:, -2:].astype(np.int64)
-    return (cylinders_of_edges(np.stack(point, axis=1), edges, radius, of_nodes=True),)
+    return (cylinders_of_edges(np.column_stack(point), edges, radius, of_nodes=True),)
 
 
 def _header(data: bytes) -> tuple[str, Elements, int]:

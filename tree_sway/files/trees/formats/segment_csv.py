@@ -14,6 +14,7 @@ begins at the end of another.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -30,22 +31,21 @@ def _read(path: Path) -> TreeFile:
     text = parse_table(read_lines(path), str(path))
     columns = {column.lower() for column in text.columns}
     wood = species_named('broadleaf')
+    order: dict[str, Any] = {}
+    notes: tuple[str, ...] = ()
     if {*_ENDS, 'radius'} <= columns:
-        start, end, radius = np.hsplit(text.strict([*_ENDS, 'radius']), [3, 6])
-        tree = tree_from_segments(start, end, 2.0 * radius[:, 0], name=path.stem, species=wood.key)
         notes = ('parents are found by the ends that meet',)
-        return TreeFile(tree, wood, str(path), notes=notes)
-    labels, parents = text.family('segment', 'parent', [-1], 'segment')
-    tip = 'd1' if 'd1' in columns else 'd0'
-    values = text.strict(['x0', 'y0', 'z0', 'x1', 'y1', 'z1', 'd0', tip])
-    branch = None
-    if 'branch' in columns:
-        branch = text.whole(text.strict(['branch'])[:, 0], 'branch')
-    tree = tree_from_segments(
-        *np.hsplit(values, [3, 6]), parent=parents, branch=branch, labels=labels,
-        name=path.stem, species=wood.key,
-    )  # fmt: skip
-    return TreeFile(tree, wood, str(path))
+        values = text.strict([*_ENDS, 'radius', 'radius'])
+        values[:, 6:] *= 2.0
+    else:
+        order['labels'], order['parent'] = text.family('segment', 'parent', [-1], 'segment')
+        tip = 'd1' if 'd1' in columns else 'd0'
+        values = text.strict(['x0', 'y0', 'z0', 'x1', 'y1', 'z1', 'd0', tip])
+        if 'branch' in columns:
+            order['branch'] = text.whole(text.strict(['branch'])[:, 0], 'branch')
+    parts = np.hsplit(values, [3, 6])
+    tree = tree_from_segments(*parts, **order, name=path.stem, species=wood.key)
+    return TreeFile(tree, wood, str(path), notes)
 
 
 _ENDS = ('x1', 'y1', 'z1', 'x2', 'y2', 'z2')

@@ -16,7 +16,6 @@ import re
 
 import numpy as np
 
-from tree_sway.core.arrays import Ints
 from tree_sway.core.tree import checked_order
 from tree_sway.errors import FormatError
 from tree_sway.files.file_format import FileFormat
@@ -56,34 +55,18 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         raise FormatError('no nodes', cure='give a node in each line')
     nodes = table.strict(_COLUMNS)[:, 2:6]
     labels, parent = table.family('number', 'parent', [-1], 'node')
-    trees = []
-    for rows in _rows_of_trees(parent, labels):
-        place = np.full(len(parent) + 1, -1)  # with one for the parent of the root
-        place[rows] = np.arange(len(rows))
-        own = nodes[rows]
-        cylinders = cylinders_of_nodes(
-            own[:, :3],
-            2.0 * own[:, 3],
-            place[parent[rows]],
-            [labels[row] for row in rows],
-            cones=True,
-        )
-        trees.append(cylinders)
-    return tuple(trees)
-
-
-def _rows_of_trees(parent: Ints, labels: Sequence[str]) -> list[list[int]]:
-    """Rows of the nodes of each tree, parents first."""
-    trees: list[list[int]] = []
-    tree_of: dict[int, list[int]] = {}
+    rows_of: dict[int, list[int]] = {}
+    root = np.arange(len(parent))
     for row in checked_order(parent, labels).tolist():
-        if parent[row] < 0:
-            trees.append([])
-            tree_of[row] = trees[-1]
-        else:
-            tree_of[row] = tree_of[int(parent[row])]
-        tree_of[row].append(row)
-    return trees
+        if parent[row] >= 0:
+            root[row] = root[parent[row]]
+        rows_of.setdefault(int(root[row]), []).append(row)
+    return tuple(
+        cylinders_of_nodes(
+            np.array(rows), nodes[:, :3], 2.0 * nodes[:, 3], parent, labels, cones=True
+        )
+        for rows in rows_of.values()
+    )
 
 
 FORMAT = FileFormat('swc', ('.swc',), _is_swc, _read)

@@ -35,11 +35,10 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     of_tree, of_node = _columns(lines[0], f'{path}:{numbers[0]}')
     if len(lines) < 2:
         raise FormatError('no trees')
-    trees = []
-    for number, line in zip(numbers[1:], lines[1:], strict=True):
-        cells = _filled(split_row(line, ','))
-        trees.append(_tree(cells[len(of_tree) :], of_node, f'{path}:{number}'))
-    return tuple(trees)
+    return tuple(
+        _tree(_filled(split_row(line, ','))[len(of_tree) :], of_node, f'{path}:{number}')
+        for number, line in zip(numbers[1:], lines[1:], strict=True)
+    )
 
 
 def _columns(header: str, where: str) -> tuple[list[str], list[str]]:
@@ -72,15 +71,11 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
             where=where,
             cure=f'a node has {",".join(columns)}',
         )
-    nodes = [','.join(cells[begin : begin + size]) for begin in range(0, len(cells), size)]
-    table = TextTable(
-        tuple(columns), range(len(nodes)), nodes, lambda node: node.split(','), f'{where}: node'
-    )
+    nodes = [cells[begin : begin + size] for begin in range(0, len(cells), size)]
+    table = TextTable(tuple(columns), range(len(nodes)), nodes, list, f'{where}: node')
     values = table.strict(_FIELDS)
-    points = values[:, :3]
-    diameter = 2.0 * values[:, 3]
     parent = table.whole(values[:, 4], 'parent_id')
-    labels = [f'{where}: node {row}' for row in range(len(nodes))]
+    labels = [f'{where}: node {row}' for row in table.rows]
     for row, above in enumerate(parent.tolist()):
         is_root = above < 0
         if is_root != (row == 0) or above >= len(nodes):
@@ -89,8 +84,10 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
                 where=labels[row],
                 cure='the first node has -1, every other the number of a node of its line',
             )
-    parent = np.maximum(parent, -1)
-    return cylinders_of_nodes(points, diameter, parent, labels, cones=False)
+    rows = np.arange(len(nodes))
+    return cylinders_of_nodes(
+        rows, values[:, :3], 2.0 * values[:, 3], np.maximum(parent, -1), labels, cones=False
+    )
 
 
 FORMAT = FileFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read, FITTED)

@@ -63,33 +63,26 @@ def _is_text(head: str) -> bool:
     lines = [line for line in head.splitlines() if line.strip() and line[0] != '#'][:2]
     if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
+    numbers = [list(map(finite, _cells(line))) for line in lines]
     names = [re.sub(r'[^a-z]', '', cell.lower()) for cell in _cells(lines[0])] if lines else []
     places = {re.sub(r'[^a-z]', '', name): place for place, name in enumerate(_COLUMNS)}
-    is_named = bool(names) and all(finite(cell) is None for cell in _cells(lines[0]))
+    is_named = bool(names) and {*numbers[0]} == {None}
     if is_named and max(map(len, names)) > _CRYPTIC and not places.keys() & set(names):
         return False  # a header of other columns
     if any(places.get(name, place) != place for place, name in enumerate(names)):
         return False  # a header that names them elsewhere
-    narrow = []
-    for line in lines:
-        row = list(map(finite, _cells(line)))
-        if None in row or len(row) < _LEAST_COLUMNS:
-            continue
-        if len(row) >= _UNMISTAKABLE:
-            return True
-        narrow.append(np.array([row], dtype=np.float64))
-    return bool(narrow) and all(map(_are_cylinders, narrow))
+    rows = [row for row in numbers if None not in row and len(row) >= _LEAST_COLUMNS]
+    is_wide = any(len(row) >= _UNMISTAKABLE for row in rows)
+    return is_wide or (bool(rows) and all(_are_cylinders(np.array([row])) for row in rows))
 
 
 def _are_cylinders(table: Floats) -> bool:
     """Whether the columns of an array, (n, 9 to 15), are those of cylinders."""
-    radius = table[:, 0]
-    length = table[:, 1]
     axis_length = np.linalg.norm(table[:, 5:8], axis=1)
     parent = table[:, 8]
     is_unit = np.abs(axis_length - 1.0) < _UNIT_ERROR
-    is_point = (axis_length == 0.0) & (length == 0.0)
-    has_size = (radius >= 0.0) & (length >= 0.0)
+    is_point = (axis_length == 0.0) & (table[:, 1] == 0.0)
+    has_size = (table[:, :2] >= 0.0).all(axis=1)
     has_parent = (parent == np.round(parent)) & (parent >= -1)
     are_cylinders = (is_unit | is_point) & has_size & has_parent
     return bool(are_cylinders.mean() > _LEAST_SHARE)
@@ -99,18 +92,18 @@ def _read_mat(path: Path) -> tuple[Cylinders, ...]:
     """Every cylinder model of a MATLAB file."""
     variables = read_mat(path)
     tables = [(name, _table(name, model)) for name, model in _models(variables)]
-    if not tables:
-        tables = list(_arrays(variables))
+    tables = tables or list(_arrays(variables))
     if not tables:
         raise FormatError(
             "no struct with a field 'cylinder', and no array of cylinders",
             cure='save the QSM struct of TreeQSM, or its columns as an array of 9 to 15',
         )
-    trees = []
-    for name, table in tables:
-        labels = [f'{name} cylinder {i + 1}' for i in range(len(table))]
-        trees.append(replace(_cylinders(table, labels), name=name))
-    return tuple(trees)
+    return tuple(
+        replace(
+            _cylinders(table, [f'{name} cylinder {i + 1}' for i in range(len(table))]), name=name
+        )
+        for name, table in tables
+    )
 
 
 def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
@@ -118,14 +111,11 @@ def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
     lines = read_lines(path)
     titles = [row for row, line in enumerate(lines) if line.startswith('#')][1:]
     lines = lines[: titles[0]] if titles else lines  # tables of branches and of the tree follow
-    filled = [row for row, line in enumerate(lines) if line.strip() and line[0] != '#']
-    if filled and all(finite(cell) is None for cell in _cells(lines[filled[0]])):
-        header = filled.pop(0)
-        lines[header] = ''
-    names = list(_COLUMNS)
-    if filled and len(_cells(lines[filled[0]])) == _LEAST_COLUMNS:
-        names.remove('extension')
-    table = parse_columns(lines, str(path), names, _cells)
+    table = parse_columns(lines, str(path), _COLUMNS, _cells)
+    if table.texts and all(finite(cell) is None for cell in _cells(table.texts[0])):
+        table = table.part(table.rows[1:])
+    has_extension = any(len(_cells(text)) != _LEAST_COLUMNS for text in table.texts[:1])
+    names = _COLUMNS if has_extension else _COLUMNS[:-1]
     values = table.strict(names)
     labels = [f'{table.where(row)}: cylinder {row + 1}' for row in range(len(values))]
     return (_cylinders(values, labels),)
@@ -158,12 +148,9 @@ def _arrays(variables: dict[str, Any]) -> Iterator[tuple[str, Floats]]:
             yield from _arrays(inside)
         elif isinstance(value, np.ndarray) and value.ndim == 2:
             for array in (value, value.T):
-                n_rows, n_columns = array.shape
-                if n_rows == 0 or not _LEAST_COLUMNS <= n_columns <= _MOST_COLUMNS:
-                    continue
-                table = array.astype(np.float64)
-                if _are_cylinders(table):
-                    yield name, table[:, : len(_COLUMNS)]
+                has_width = _LEAST_COLUMNS <= array.shape[1] <= _MOST_COLUMNS
+                if len(array) and has_width and _are_cylinders(array.astype(np.float64)):
+                    yield name, array[:, : len(_COLUMNS)].astype(np.float64)
                     break
 
 
@@ -200,9 +187,7 @@ def _cylinders(table: Floats, labels: list[str]) -> Cylinders:
     """Cylinders from the columns, (n, 9 or 10), with the name of each row in errors."""
     if len(table) == 0:
         raise FormatError('no cylinders')
-    length = table[:, 1]
-    start = table[:, 2:5]
-    axis = table[:, 5:8]
+    length, start, axis = table[:, 1], table[:, 2:5], table[:, 5:8]
     parent, *extension = _indices(table[:, 8:10], labels)
     axis_length = np.linalg.norm(axis, axis=1)
     for row in np.flatnonzero((axis_length == 0.0) & (length > 0.0))[:1]:

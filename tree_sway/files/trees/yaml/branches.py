@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,8 +17,7 @@ from tree_sway.files.yaml_document import YamlDocument
 Values = dict[str, Any]
 
 
-@dataclass(slots=True)
-class _Placed:
+class _Placed(NamedTuple):
     """Geometry of a branch in the tree's frame, and its first row in the table."""
 
     start: Floats
@@ -54,13 +52,12 @@ def branch_segments(document: YamlDocument) -> Values:
         branch = branches[number]
         its_parent = placed.get(parents[number])
         start, end, diameter = _own_points(branch, where[number])
-        sits_on = -1
-        origin = np.zeros(3)
+        base, origin = -1, np.zeros(3)
         if its_parent is not None:
             sits_on, origin = _attachment(branch, its_parent, start[0], where[number])
+            base = its_parent.first + sits_on
         first = len(parent)
         placed[number] = _Placed(start + origin, end + origin, diameter, first)
-        base = its_parent.first + sits_on if its_parent is not None else -1
         parent += [base, *range(first, first + len(start) - 1)]
         owner += [number] * len(start)
         # A segment between two nodes is named by the line of the second.
@@ -83,14 +80,13 @@ def branch_segments(document: YamlDocument) -> Values:
 def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
     index: dict[str, int] = {}
     for number, branch in enumerate(branches):
-        if branch['name'] in index:
-            first = where[index[branch['name']]].rsplit(': ', 1)[0]
+        first = index.setdefault(branch['name'], number)
+        if first != number:
             raise FormatError(
-                f'a second branch of that name, the first is at {first}',
+                f'a second branch of that name, the first is at {where[first].rsplit(": ", 1)[0]}',
                 where=where[number],
                 cure='give each branch its own name',
             )
-        index[branch['name']] = number
     return index
 
 
@@ -118,10 +114,11 @@ def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
         raise FormatError(what, where=where, cure='give one of the two')
     if 'nodes' in branch:
         nodes = np.array(branch['nodes'], dtype=np.float64)
-        return nodes[:-1, :3], nodes[1:, :3], np.stack([nodes[:-1, 3], nodes[1:, 3]], axis=1)
+        return nodes[:-1, :3], nodes[1:, :3], np.column_stack([nodes[:-1, 3], nodes[1:, 3]])
     links = branch['segments']
-    start = np.array([link['start'] for link in links], dtype=np.float64)
-    end = np.array([link['end'] for link in links], dtype=np.float64)
+    start, end = (
+        np.array([link[each] for link in links], dtype=np.float64) for each in ('start', 'end')
+    )
     return start, end, np.array([[1.0, 1.0] * np.array(link['diameter']) for link in links])
 
 
