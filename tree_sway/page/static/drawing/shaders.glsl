@@ -206,7 +206,7 @@ void main() {
   vec3 base = mix(twigColor, own * (0.15 + 0.77 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
   // Within the crown, and at the foot among grass, bark is dark.
-  float open = (0.15 + 0.85 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high));
+  float open = (0.28 + 0.72 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high));
 #ifdef PLAIN
   float shone = sunny;
 #else
@@ -238,7 +238,7 @@ out vec2 at;
 out vec3 lit; // factor of the colour of the leaf
 flat out vec3 veil; // added colour: haze, paint, specular reflection
 flat out float edge; // share of the card that is drawn: less where it is seen edge-on, as a line
-const float WAX = 0.04; // share of light that the surface of a leaf reflects, in the colour of the light
+const float WAX = 0.03; // share of light that the surface of a leaf reflects, in the colour of the light
 void main() {
   uint row = rowOf();
   vec4 root = texel(row);
@@ -275,10 +275,10 @@ void main() {
   // The far side of the crown has little sun, whatever the shadow of its few leaves lets through.
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
   float sunny = mix(0.12, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
-  vec3 up = sky * (0.32 + 0.78 * near) * (0.68 + 0.32 * n.z) * (0.8 + 0.2 * turnedTo);
+  vec3 up = sky * (0.27 + 0.8 * near) * (0.68 + 0.32 * n.z) * (0.8 + 0.2 * turnedTo);
   // Light through a leaf is yellow, and is seen most against the sun.
   vec3 through = vec3(1.0, 1.2, 0.35) * max(-side * dot(flat_, light), 0.0) * (0.35 + 0.65 * turnedTo);
-  vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.1 + 2.2 * max(0.8 * across + 0.2, 0.0)) + through);
+  vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.1 + 2.4 * max(0.8 * across + 0.2, 0.0)) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 spot = 9.0 * shadowTop * p;
@@ -408,7 +408,9 @@ void main() {
   p = vec3(heading.x * p.x - heading.y * p.y, heading.y * p.x + heading.x * p.y, p.z) + placed.xyz;
   vec3 n = normalize(vec3(heading.x * facing.x - heading.y * facing.y,
     heading.y * facing.x + heading.x * facing.y, facing.z));
-  base = vec4(tint * (sky * (0.75 + 0.25 * n.z) + sun * max(dot(n, light), 0.0)), clearness(p));
+  // Less light of the sky comes near the ground.
+  float open = 0.6 + 0.4 * clamp(2.5 * (p.z - ground) / placed.w, 0.0, 1.0);
+  base = vec4(tint * open * toned(sky * (0.75 + 0.25 * n.z) + sun * max(dot(n, light), 0.0)), clearness(p));
   gl_Position = seen(p);
 }
 
@@ -499,7 +501,7 @@ void main() {
   float sky = skyAt(area.xy + area.z * (2.0 * at - 1.0));
   float open = (1.0 - depth * dark) * mix(1.0, sky, smoothstep(0.0, 0.15, min(rim.x, rim.y)));
   if (open > 0.99) discard;
-  color = vec4(0.05, 0.08, 0.13, 1.0 - open);
+  color = vec4(0.06, 0.08, 0.11, 1.0 - open);
 }
 
 #part backdrop.vertex
