@@ -260,9 +260,11 @@ void main() {
 #ifdef PLAIN
   edge = min(1.0, 4.0 * abs(dot(flat_, back)));
   float own = 0.3;
+  const float least = 0.3; // of the sun: few cards for many leaves hide more of it than these would
 #else
   edge = min(1.0, 2.2 * abs(dot(flat_, back)));
   float own = 0.8;
+  const float least = 0.12;
 #endif
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
   vec3 n = normalize(own * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
@@ -274,7 +276,7 @@ void main() {
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
   // The far side of the crown has little sun, whatever the shadow of its few leaves lets through.
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
-  float sunny = mix(0.12, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
+  float sunny = mix(least, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
   vec3 up = sky * (0.27 + 0.8 * near) * (0.68 + 0.32 * n.z) * (0.8 + 0.2 * turnedTo);
   // Light through a leaf is yellow, and is seen most against the sun.
   vec3 through = vec3(1.0, 1.2, 0.35) * max(-side * dot(flat_, light), 0.0) * (0.35 + 0.65 * turnedTo);
