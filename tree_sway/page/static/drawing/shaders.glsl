@@ -279,7 +279,7 @@ void main() {
   float sunny = mix(least, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
   vec3 up = sky * (0.27 + 0.8 * near) * (0.68 + 0.32 * n.z) * (0.8 + 0.2 * turnedTo);
   // Light through a leaf is yellow, and is seen most against the sun.
-  vec3 through = vec3(1.0, 1.2, 0.35) * max(-side * dot(flat_, light), 0.0) * (0.35 + 0.65 * turnedTo);
+  vec3 through = vec3(1.8, 2.1, 0.6) * max(-side * dot(flat_, light), 0.0) * (0.9 - 0.5 * turnedTo);
   vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.1 + 2.4 * max(0.8 * across + 0.2, 0.0)) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
