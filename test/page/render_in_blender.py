@@ -15,7 +15,7 @@ from typing import Any
 FRAME, SAMPLES, SIZE = 60, 16, 480
 """Frame of the animation, samples of a pixel, and width and height of the picture [px]."""
 
-AZIMUTH, SUN = -0.6, (-0.3866, 0.4295, -0.8161)
+AZIMUTH, SUN = -0.6, (-0.7, -0.3, -0.648)
 """Those of the page: where the camera stands [rad], and the way of the sun's light."""
 
 

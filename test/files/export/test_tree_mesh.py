@@ -108,6 +108,17 @@ def test_a_crown_of_smaller_shoots_is_above_the_ground_and_lit_from_outside(tree
     assert 0.7 < area(parted) / area(whole) <= 1.05
 
 
+def test_light_and_shade_of_a_crown_meet_at_no_edge(tree):
+    leaves = leaf_clusters(tree, np.random.default_rng(0), count=200)
+    mesh = crown_mesh(tree, leaves, Spray(1.5, 0.5, (0.0, 1.2)), 4)
+    upward = mesh.turned(tree.rest_poses)[:, 2]
+    from_below = np.argsort(mesh.placed(tree.rest_poses)[:, 2])
+    layers = np.array([layer.mean() for layer in np.array_split(upward[from_below], 10)])
+    assert np.abs(np.diff(layers)).max() < 0.3
+    assert layers.min() > -0.5  # the lowest leaves have light of the sky, too
+    assert layers[-1] > 0.5
+
+
 def test_a_texture_goes_on_along_each_branch(tree):
     mesh = wood_mesh(tree)
     along = mesh.texture[:, 1].reshape(tree.n_segments, 2, SIDES)

@@ -28,8 +28,11 @@ _ROLL, _YAW, _BOW = 0.3, 0.35, 0.1
 _SPREAD = 0.4
 """Distance of the outermost shoot from the middle of its cluster, over the size of that [-]."""
 
-_FLAT, _SKYWARD = 0.5, 0.4
-"""Part of a card's own normal in that by which it is lit, and of the sky, beside the crown's."""
+_FLAT, _SKYWARD, _UPRIGHT = 0.5, 0.55, 0.5
+"""
+Part of a card's own normal in that by which it is lit, of the sky, and of its height in the crown,
+beside its distance from the axis of that, in standard deviations of the cards.
+"""
 
 
 class TreeMesh(NamedTuple):
@@ -125,8 +128,8 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     """
     Return the cards of a whole crown, each cluster of leaves as several smaller shoots.
 
-    They are lit as a crown is, by normals that point away from its middle, and none reaches below
-    the foot of the tree.
+    They are lit as a crown is, by normals that point away from its middle, the more the farther
+    they are from it, and to the sky. None reaches below the foot of the tree.
     """
     mesh = leaf_mesh(_parted(leaves, shoots), spray)
     poses = tree.rest_poses
@@ -136,11 +139,11 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     tree_of_segment = np.cumsum(is_root) - 1  # in a forest
     number = tree_of_segment[segment]
     centre = corners.mean(axis=1)
-    total = np.column_stack([np.bincount(number, each) for each in centre.T])
-    middle = total / np.maximum(np.bincount(number), 1)[:, None]
     foot = tree.start[is_root, 2]
-    away = _unit(centre - middle[number])
-    away[:, 2] += _SKYWARD
+    # Not of length 1: that would turn at once in the middle, as light and shade meet at an edge.
+    away = centre - _means(centre, number)[number]
+    away /= np.maximum(np.sqrt(_means(away**2, number)), 1e-9)[number]
+    away[:, 2] = _UPRIGHT * away[:, 2] + _SKYWARD
     rotation = Rotation.from_quat(poses[segment, 3:])
     outward = rotation.inv().apply(away)[:, None]
     own = mesh.normals.reshape(-1, 4, 3)
@@ -177,6 +180,12 @@ def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
 
 def _turns(leaves: LeafClusters) -> Rotation:
     return Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
+
+
+def _means(values: Floats, number: Ints) -> Floats:
+    """Mean of the values (m, k) of each number, from 0."""
+    sums = [np.bincount(number, column) for column in values.T]
+    return np.stack(sums, axis=1) / np.maximum(np.bincount(number), 1)[:, None]
 
 
 def _unit(vectors: Floats) -> Floats:

@@ -43,7 +43,7 @@ const [TILES, FEW_KINDS] = [[192, 128], 16];
 const [GLOSS, GLOSS_OF_MANY] = [0.2, 0.03];
 /** Colour of a crown of leaves or of needles in the open, over its green; where a leaf is more vivid it is
  * half-way between, and less bright or dark. */
-const OPEN_GREENS = [[0.8, 1, 0.48], [0.68, 1, 0.6]];
+const OPEN_GREENS = [[0.86, 1, 0.56], [0.84, 1, 0.62]];
 /** First and last row of no branch. */
 const NONE = [-2, -2];
 /** Months in which a horse chestnut flowers, from 1. */

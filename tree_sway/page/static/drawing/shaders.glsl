@@ -206,7 +206,7 @@ void main() {
   vec3 base = mix(twigColor, own * (0.15 + 0.77 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
   // Within the crown, and at the foot among grass, bark is dark.
-  float open = (0.15 + 0.85 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high));
+  float open = (0.28 + 0.72 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high));
 #ifdef PLAIN
   float shone = sunny;
 #else
@@ -238,6 +238,7 @@ out vec2 at;
 out vec3 lit; // factor of the colour of the leaf
 flat out vec3 veil; // added colour: haze, paint, specular reflection
 flat out float edge; // share of the card that is drawn: less where it is seen edge-on, as a line
+const float WAX = 0.03; // share of light that the surface of a leaf reflects, in the colour of the light
 void main() {
   uint row = rowOf();
   vec4 root = texel(row);
@@ -259,38 +260,41 @@ void main() {
 #ifdef PLAIN
   edge = min(1.0, 4.0 * abs(dot(flat_, back)));
   float own = 0.3;
+  const float least = 0.3; // of the sun: few cards for many leaves hide more of it than these would
 #else
   edge = min(1.0, 2.2 * abs(dot(flat_, back)));
   float own = 0.8;
+  const float least = 0.12;
 #endif
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
   vec3 n = normalize(own * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   float side = dot(flat_, back) < 0.0 ? -1.0 : 1.0;
   float across = dot(n, light);
   float open = flutter.z;
-  // Leaves deep in the crown are darker than those at its surface.
+  // Leaves deep in the crown are darker than those at its surface, but are lit by other leaves.
   float near = smoothstep(0.0, 0.8, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
   // The far side of the crown has little sun, whatever the shadow of its few leaves lets through.
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
-  float sunny = mix(0.12, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near) * (0.1 + 0.9 * turnedTo);
-  vec3 up = sky * (0.14 + 0.91 * near) * (0.6 + 0.4 * n.z) * (0.75 + 0.3 * turnedTo);
-  // Light through a leaf is yellow.
-  vec3 through = vec3(1.0, 1.08, 0.4) * (1.2 * max(-side * dot(flat_, light), 0.0));
-  vec3 direct = sun * sunny * (0.1 + 3.3 * max(0.8 * across + 0.2, 0.0) + through);
+  float sunny = mix(least, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
+  vec3 up = sky * (0.27 + 0.8 * near) * (0.68 + 0.32 * n.z) * (0.8 + 0.2 * turnedTo);
+  // Light through a leaf is yellow, and is seen most against the sun.
+  vec3 through = vec3(1.8, 2.1, 0.6) * max(-side * dot(flat_, light), 0.0) * (0.9 - 0.5 * turnedTo);
+  vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.1 + 2.4 * max(0.8 * across + 0.2, 0.0)) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 spot = 9.0 * shadowTop * p;
   float limb = 0.5 * (sin(spot.x + 1.7 * spot.z) + sin(spot.y - 1.3 * spot.z + 1.0));
   vec3 hue = dulled * (1.0 + 0.08 * sin(9.0 * flutter.y) + vec3(0.05, 0.0, -0.06) * (sin(5.0 * flutter.y) + limb));
-  hue += (0.5 * (flutter.w - 1.0) + 0.12 * max(0.0, near - 0.7)) * vec3(0.5, 0.2, -0.4);
+  hue += (0.5 * (flutter.w - 1.0) + 0.12 * max(0.0, near - 0.7)) * vec3(0.35, 0.2, -0.2);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y) + 0.35 * limb);
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.25, -0.8, 0.4) * (0.6 * sin(2.0 * flutter.y) - 0.7 * limb));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
-  vec3 whole = hue * flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : toned(up + direct));
+  vec3 shone = isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : toned(up + direct);
+  vec3 whole = hue * flutter.w * shone;
   float clear = clearness(p);
   lit = clear * (1.0 - paint.a) * whole;
-  veil = (1.0 - clear) * horizon + clear * (paint.a * paint.rgb * whole + shine);
+  veil = (1.0 - clear) * horizon + clear * (paint.a * paint.rgb * whole + WAX * shone + shine);
 }
 
 #part leaf.fragment
@@ -406,7 +410,9 @@ void main() {
   p = vec3(heading.x * p.x - heading.y * p.y, heading.y * p.x + heading.x * p.y, p.z) + placed.xyz;
   vec3 n = normalize(vec3(heading.x * facing.x - heading.y * facing.y,
     heading.y * facing.x + heading.x * facing.y, facing.z));
-  base = vec4(tint * (sky * (0.75 + 0.25 * n.z) + sun * max(dot(n, light), 0.0)), clearness(p));
+  // Less light of the sky comes near the ground.
+  float open = 0.6 + 0.4 * clamp(2.5 * (p.z - ground) / placed.w, 0.0, 1.0);
+  base = vec4(tint * open * toned(sky * (0.75 + 0.25 * n.z) + sun * max(dot(n, light), 0.0)), clearness(p));
   gl_Position = seen(p);
 }
 
@@ -497,7 +503,7 @@ void main() {
   float sky = skyAt(area.xy + area.z * (2.0 * at - 1.0));
   float open = (1.0 - depth * dark) * mix(1.0, sky, smoothstep(0.0, 0.15, min(rim.x, rim.y)));
   if (open > 0.99) discard;
-  color = vec4(0.05, 0.08, 0.13, 1.0 - open);
+  color = vec4(0.06, 0.08, 0.11, 1.0 - open);
 }
 
 #part backdrop.vertex
