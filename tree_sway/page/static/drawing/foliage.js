@@ -48,9 +48,11 @@ const {
   BROWSED, LEAST_BROWSED,
   /** How far a card bends down at its end, over its length. */
   BOW,
-} = /** @type {Record<string, number>} */ (numbers.foliage);
+} = /** @type {Record<string, any>} */ (numbers.foliage);
 /** Whether a tree weeps. @param {Look} look */
 const weeps = ({ droop = 0 }) => droop > WEEPS;
+/** Whether its twigs hang straight down, as those of a weeping tree, or of a pot plant that has any droop. @param {Look} look */
+const dangles = (look) => weeps(look) || (look.is_potted && (look.droop ?? 0) > 0);
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Numbers per vertex of a card. */
@@ -176,10 +178,10 @@ function leafyShoot(kind, rest, i) {
   const own = [0, 0, 0, 1];
   multiply(rest, STRIDE * carrier[i] + 4, [x, y, z, w], 0, own);
   const at = leafPlace(kind, rest, i);
-  const isWeeping = weeps(lookOf(kind));
-  // Twigs of a weeping tree hang straight down from where they grow.
-  if (isWeeping) turned(own, [1, 0, 0]).forEach((each, c) => (at[c] -= 0.5 * sizes[i] * (each + Number(c > 1))));
-  return { segment: carrier[i], at, frame: isWeeping ? DOWN : own, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
+  const isHanging = dangles(lookOf(kind));
+  // Some twigs hang straight down from where they grow.
+  if (isHanging) turned(own, [1, 0, 0]).forEach((each, c) => (at[c] -= 0.5 * sizes[i] * (each + Number(c > 1))));
+  return { segment: carrier[i], at, frame: isHanging ? DOWN : own, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
 }
 
 /** Segments of a conifer's dead stubs, which bear no needles: limbs on the stem below the longest one and much shorter, with
@@ -258,14 +260,14 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, (look.form === "tufts" ? 2.6 : SHOOT) * look.leaf_size / mean);
+    const long = Math.max(small, (SHOOT[look.form] ?? SHOOT.usual) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
     return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
   }
-  const size = (look.is_potted ? 0.85 : 1) * leaf / mean;
+  const size = leaf / mean;
   const leaves = (FULLNESS * Math.PI) / (4 * FILLED * alone.width * size * size);
-  const spray = { ...alone, length: size };
+  const spray = { ...alone, length: (look.is_potted ? 0.65 : 1) * size };
   return { each: Math.max(1, Math.min(each, Math.round(leaves))), along: 1, spray, isSpread: true };
 }
 
@@ -290,6 +292,7 @@ function leafyTwig(look, { length, width }, random) {
   const wide = look.spray.width * whole;
   const { depth: deep = 0.8, droop = 0 } = look;
   const bare = look.form === "tufts" ? BARE_TWIG : 0.04;
+  const isHanging = dangles(look);
   const some = () => random() + random() - 1;
   // Twigs end at the surface of the cluster, where the light is, and leaves stand towards their ends.
   const way = unit([some(), some(), some()]);
@@ -297,12 +300,12 @@ function leafyTwig(look, { length, width }, random) {
   const end = [whole * (0.42 + 0.42 * far * way[0]), 0.8 * wide * far * way[1], 0.8 * deep * wide * far * way[2]];
   const foot = [Math.max(0, end[0] - 0.6 * Math.hypot(end[1], end[2])) * random(), 0, 0];
   const along = end.map((each, c) => each - foot[c]);
-  const spread = hangs(look) ? 1.4 - 1.2 * droop : look.has_needles ? 0.6 : 1.4;
+  const spread = isHanging ? 1.1 - 0.9 * droop : hangs(look) ? 1.4 - 1.2 * droop : look.has_needles ? 0.6 : 1.4;
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
-    const far = bare + (1 - bare) * ((i + random()) / ON_TWIG) ** (hangs(look) ? 1 : 0.5);
-    const away = unit(unit(along).map((each, c) => each + spread * some() - (look.is_potted && c > 1 ? 2.2 * droop : 0)));
+    const far = bare + (1 - bare) * ((i + random()) / ON_TWIG) ** (hangs(look) || isHanging ? 1 : 0.5);
+    const away = unit(unit(along).map((each, c) => each + spread * some() - (look.is_potted && c > 1 ? Math.min(0, 2.2 * droop) : 0)));
     // Leaves face outward and up, the more so the flatter the cluster is.
-    const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1)), away));
+    const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1 && !isHanging)), away));
     const normal = cross(away, across);
     return cornersOf((u, v) => ({
       place: hanging(foot.map((each, c) => each + far * along[c] + length * ((u - 0.15) * away[c] + v * width * across[c])), BOW * length * u),

@@ -31,7 +31,7 @@ export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form
 /** Width of a picture over its length.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} [isSpread] of small cards */
 export const pictureWidth = ({ form, slenderness, spray }, along, isSpread = false) =>
-  along > 1 ? spray.width * (isSpread && (form === "needles" || form === "fronds") ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
+  along > 1 ? spray.width * (isSpread && form === "needles" ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
 /** Part of the width of a picture that has leaves; the flowers of a horse chestnut are beside them.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} isFlowering */
@@ -56,8 +56,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.58, 0, 0, 0.42, 26);
-  else if (look.form === "tufts") brush.tufts();
+  else if (look.form === "tufts") brush.tufts(along < 5 ? places.tuft : places.tufts);
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
   else brush.spray(1 / along, isSpread ? 0.65 : 0.75);
@@ -173,12 +172,12 @@ class Brush {
     const { look: { form, twig }, random, half } = this;
     const isFrond = form === "fronds";
     const apart = isFrond ? 0.45 * shoot : Math.max(0.12, 0.95 * shoot);
-    const long = (isFrond ? 0.4 : 0.22) * apart;
+    const long = (isFrond ? 0.4 : 0.34) * apart;
     const wide = Math.max(0.1 * long, 0.004);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
-    for (let x = 0.02; x < 0.9; x += 0.36 * apart, side = -side) {
+    for (let x = 0.02; x < 0.9; x += 0.45 * apart, side = -side) {
       const lean = side * (isFrond ? 0.5 : 0.75 + 0.25 * random());
       const reach = (0.7 + 0.3 * random()) * Math.min(half * Math.sin(Math.PI * (0.12 + 0.88 * x) ** 0.85) ** 0.7, (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
       if (reach > 0.03) shoots.push([x, 0, lean, Math.min(reach, 1.1 - x)]);
@@ -195,7 +194,7 @@ class Brush {
             const far = (i + random()) / count;
             const out = Math.min(1, 0.5 * Math.hypot(x, y) + 0.55 * far);
             const color = this.color((isUpper ? 0.72 : 0.45) + 0.4 * out, 0.3 * far);
-            const tilt = (i % 2 ? 1 : -1) * (isFrond ? 0.45 : 0.55 + 0.5 * random()) * (isUpper ? 0.7 : 1);
+            const tilt = (i % 2 ? 1 : -1) * (isFrond ? 0.45 : 0.7 + 0.4 * random()) * (isUpper ? 0.8 : 1);
             this.at(far * reach, 0, tilt, 1, () => this.line(long * (0.6 + 0.4 * random()), wide, color));
           }
         });
@@ -225,11 +224,11 @@ class Brush {
     }
   }
 
-  /** Tufts at the end of a shoot and of its side shoots. */
-  tufts() {
-    for (const [x, y] of places.tufts) {
-      const [far, beside] = [x + 0.08 * this.random(), this.half * y];
-      this.tuft(far, beside, Math.atan2(0.6 * beside, 0.4), y ? 0.27 : 0.36, 20);
+  /** Tufts at the ends of side shoots: place, length of the needles and how many there are. @param {number[][]} ends */
+  tufts(ends) {
+    for (const [x, y, long, count] of ends) {
+      const beside = this.half * y;
+      this.tuft(x, beside, Math.atan2(0.6 * beside, 0.4), long, count);
     }
   }
 
@@ -239,10 +238,10 @@ class Brush {
     const blade = () => {
       context.fillStyle = this.color(light, 0);
       context.fill(this.blades[0]);
-      // One half lies in the shade of the other; the midrib is light.
+      // One half lies in the shade of the other; the midrib is light, and so are the veins but of evergreen leaves.
       context.fillStyle = "rgb(0 0 0 / 14%)";
       context.fill(this.blades[1]);
-      this.line(VEINS, 0.02, "rgb(255 255 200 / 25%)");
+      this.line(look.autumn ? VEINS : 0.9, 0.015, "rgb(255 255 200 / 15%)");
     };
     this.at(0, 0, 0, long, () => {
       if (look.form in IN_LEAFLETS) this.leaflets(blade, this.color(light, 0));
