@@ -51,8 +51,8 @@ const {
 } = /** @type {Record<string, any>} */ (numbers.foliage);
 /** Whether a tree weeps. @param {Look} look */
 const weeps = ({ droop = 0 }) => droop > WEEPS;
-/** Whether its twigs hang straight down, as those of a weeping tree, or of a pot plant that has any droop. @param {Look} look */
-const dangles = (look) => weeps(look) || (look.is_potted && (look.droop ?? 0) > 0);
+/** Whether twigs hang straight down. @param {Look} look */
+const dangles = (look) => weeps(look) || (look.is_potted && hangs(look));
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Numbers per vertex of a card. */
@@ -292,7 +292,6 @@ function leafyTwig(look, { length, width }, random) {
   const wide = look.spray.width * whole;
   const { depth: deep = 0.8, droop = 0 } = look;
   const bare = look.form === "tufts" ? BARE_TWIG : 0.04;
-  const isHanging = dangles(look);
   const some = () => random() + random() - 1;
   // Twigs end at the surface of the cluster, where the light is, and leaves stand towards their ends.
   const way = unit([some(), some(), some()]);
@@ -300,12 +299,12 @@ function leafyTwig(look, { length, width }, random) {
   const end = [whole * (0.42 + 0.42 * far * way[0]), 0.8 * wide * far * way[1], 0.8 * deep * wide * far * way[2]];
   const foot = [Math.max(0, end[0] - 0.6 * Math.hypot(end[1], end[2])) * random(), 0, 0];
   const along = end.map((each, c) => each - foot[c]);
-  const spread = isHanging ? 1.1 - 0.9 * droop : hangs(look) ? 1.4 - 1.2 * droop : look.has_needles ? 0.6 : 1.4;
+  const spread = hangs(look) ? 1.4 - 1.2 * droop : look.has_needles ? 0.6 : 1.4;
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
-    const far = bare + (1 - bare) * ((i + random()) / ON_TWIG) ** (hangs(look) || isHanging ? 1 : 0.5);
-    const away = unit(unit(along).map((each, c) => each + spread * some() - (look.is_potted && c > 1 ? Math.min(0, 2.2 * droop) : 0)));
+    const far = bare + (1 - bare) * ((i + random()) / ON_TWIG) ** (hangs(look) ? 1 : 0.5);
+    const away = unit(unit(along).map((each, c) => each + spread * some() + Number(c > 1 && look.form === "fronds")));
     // Leaves face outward and up, the more so the flatter the cluster is.
-    const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1 && !isHanging)), away));
+    const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1 && !dangles(look))), away));
     const normal = cross(away, across);
     return cornersOf((u, v) => ({
       place: hanging(foot.map((each, c) => each + far * along[c] + length * ((u - 0.15) * away[c] + v * width * across[c])), BOW * length * u),

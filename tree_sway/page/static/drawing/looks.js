@@ -20,8 +20,8 @@ export const outlineOf = ({ form }) => outlines[form] ?? outlines.ovate;
 /** The look of a kind; that of an average broadleaf where its description has none. @param {Kind} kind */
 export const lookOf = (kind) => kind.look ?? average;
 
-/** Whether twigs hang. @param {Look} look */
-export const hangs = ({ droop = 0 }) => droop > 0.5;
+/** Whether twigs hang: those of a plant in a pot are soft. @param {Look} look */
+export const hangs = ({ droop = 0, is_potted: isPotted }) => droop > (isPotted ? 0.3 : 0.5);
 
 /** Random numbers from 0 to 1, the same on every page. */
 export function seeded(state = 12345) {

@@ -127,11 +127,11 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
       if (share > 1 || (share < 1 && at - ringAt < RING_SPACING * point)) continue;
       ringAt = at;
       const above = at / baseRadius;
-      const low = Math.exp(-0.7 * above);
-      const flare = isStem ? low : 0;
+      const flare = isStem ? Math.exp(-0.7 * above) : 0;
       const wide = (1 - share) * radiusAt(s) + share * radiusAt(s + 1);
       const ringRadius = Math.max(wide, LEAST_RADIUS * pixel) * (1 + 0.8 * flare);
-      const [aside, upwards] = [0.31, 0.19].map((often, c) => ringRadius * CROOKED * (1 - low) * Math.sin(often * above + branch)
+      const drift = ringRadius * CROOKED * Math.sin(0.31 * above);
+      const [aside, upwards] = [Math.cos, Math.sin].map((of, c) => drift * of(0.19 * above - twist)
         + 0.5 * long * share * (1 - share) * ((1 - share) * before[c + 1] - share * after[c + 1]));
       for (let k = 0; k < corners; k++) {
         const angle = (2 * Math.PI * k) / sides - twist;

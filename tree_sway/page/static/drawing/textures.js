@@ -15,6 +15,9 @@ const {
   LEAF_SHARE,
   /** Width of a small card of short needles over that of others. */
   TWIG,
+  /** Short needles: gap between side shoots over the length of a shoot, and the least of the picture; length of a needle over the
+   * gap; how far side shoots lean from their axis, and needles [rad]. */
+  NEEDLES,
   /** Length of the part of a shoot that long needles clothe, over their length. */
   BRUSH,
   /** Number of layers of leaves; the lowest is shaded by the others. */
@@ -170,15 +173,15 @@ class Brush {
    * lighter at the tips. @param {number} shoot length of needles and shoot together */
   needles(shoot) {
     const { look: { form, twig }, random, half } = this;
-    const isFrond = form === "fronds";
-    const apart = isFrond ? 0.45 * shoot : Math.max(0.12, 0.95 * shoot);
-    const long = (isFrond ? 0.4 : 0.34) * apart;
+    const [gap, least, share, leaning, tilted] = NEEDLES[form];
+    const apart = Math.max(least, gap * shoot);
+    const long = share * apart;
     const wide = Math.max(0.1 * long, 0.004);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
     for (let x = 0.02; x < 0.9; x += 0.45 * apart, side = -side) {
-      const lean = side * (isFrond ? 0.5 : 0.75 + 0.25 * random());
+      const lean = side * leaning * (0.8 + 0.2 * random());
       const reach = (0.7 + 0.3 * random()) * Math.min(half * Math.sin(Math.PI * (0.12 + 0.88 * x) ** 0.85) ** 0.7, (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
       if (reach > 0.03) shoots.push([x, 0, lean, Math.min(reach, 1.1 - x)]);
       for (let far = apart; far < reach - 0.5 * apart; far += apart) {
@@ -194,7 +197,7 @@ class Brush {
             const far = (i + random()) / count;
             const out = Math.min(1, 0.5 * Math.hypot(x, y) + 0.55 * far);
             const color = this.color((isUpper ? 0.72 : 0.45) + 0.4 * out, 0.3 * far);
-            const tilt = (i % 2 ? 1 : -1) * (isFrond ? 0.45 : 0.7 + 0.4 * random()) * (isUpper ? 0.8 : 1);
+            const tilt = (i % 2 ? 1 : -1) * tilted * (0.6 + 0.4 * random()) * (isUpper ? 0.8 : 1);
             this.at(far * reach, 0, tilt, 1, () => this.line(long * (0.6 + 0.4 * random()), wide, color));
           }
         });
@@ -219,7 +222,7 @@ class Brush {
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
         const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1);
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.012, color));
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.009, color));
       }
     }
   }
@@ -268,7 +271,7 @@ class Brush {
   /** Leaflets in pairs along a stalk, or like fingers at its end. @param {() => void} blade paints one
    * @param {string} color of the stalk */
   leaflets(blade, color) {
-    const { look: { form, slenderness }, random } = this;
+    const { look: { form, slenderness, leaf_size: size }, random } = this;
     if (form === "digitate") {
       this.line(0.36, 0.016, color);
       for (const [lean, share] of places.digitate) {
@@ -276,7 +279,8 @@ class Brush {
       }
       return;
     }
-    const pairs = slenderness < 0.35 ? 5 : 4;
+    // The larger a leaflet is, the fewer there are.
+    const pairs = size * slenderness > 0.035 ? 3 : 5;
     const long = 1.1 / pairs;
     this.line(0.98 - long, 0.02, color);
     for (let i = 0; i <= 2 * pairs; i++) {
