@@ -86,7 +86,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
   const boughOf = boughs(kind, rest);
   const leaves = leafShare(look, along, isFlowering); // part of the picture, whose rest are flowers
   const candle = candleCorners(CANDLE * wholeLeaf(look));
-  const { lowest, soil } = lowestLeaves(look, rest[2], high[2]);
+  const lowest = lowestLeaves(look, rest[2], high[2]);
   const values = /** @type {number[]} */ ([]);
   const faces = /** @type {number[][]} */ ([]);
   for (const shoot of shoots) {
@@ -110,7 +110,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       if (!part) twig = twigs[Math.floor(VARIETY * random())];
       const corners = isSpread ? (card < 0 ? axis : twig[part]) : cardCorners(spray, shoot.phase, card, isPlain ? shapes.triangle : shapes.square);
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
-      if (isSpread && end[2] < soil) continue;
+      if (isSpread && end[2] < 0.4 * rest[2] + 0.6 * lowest) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c]) + (BOUGH / bough.radius) * (end[c] - bough.centre[c])));
       // Leaves within a clump are darker than those at its surface.
@@ -135,12 +135,11 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
   return { mesh: { values, indices: mixed(faces, random).flat() }, along, isSpread };
 }
 
-/** Heights below which there is no clump of leaves, and no leaf of one [m]; a tree in a pot has no such limit.
+/** Height below which there is no clump of leaves [m]; a tree in a pot has no such limit.
  * @param {Look} look @param {number} foot height of the foot of the tree @param {number} top */
 function lowestLeaves(look, foot, top) {
-  if (look.is_potted) return { lowest: -Infinity, soil: -Infinity };
-  const browsed = weeps(look) ? LEAST_BROWSED : Math.min(BROWSED, 0.11 * (top - foot));
-  return { lowest: foot + browsed, soil: foot + 0.6 * browsed };
+  if (look.is_potted) return -Infinity;
+  return foot + (weeps(look) ? LEAST_BROWSED : Math.min(BROWSED, 0.11 * (top - foot)));
 }
 
 /** Finds the bough of a segment, the longest line of its ancestors that bears few enough clusters: the middle of these, and the radius

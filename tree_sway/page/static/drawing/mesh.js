@@ -101,27 +101,24 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
   const isStem = parents[branch] < 0;
   const thin = arrays.branch_base_segment.includes(end - 1) ? 1 : 0.4;
   const points = baseRadius / point; // of its radius on the picture
-  const sides = points > 12 ? 20 : points > 4.8 ? 12 : points > 2 ? 6 : RIBBON;
+  const sides = points > 8 ? 16 : points > 2 ? 6 : RIBBON;
   const corners = sides === RIBBON ? 2 : sides + 1; // a tube is closed by a second first corner
   const thickness = Math.min(1, baseRadius / (BARKED * height));
-  const tile = Math.min(BARK_TILE, 0.06 * height);
-  const tilesAround = Math.max(1, Math.round((2 * Math.PI * baseRadius) / tile));
+  const tilesAround = Math.max(1, Math.round((2 * Math.PI * baseRadius) / Math.min(BARK_TILE, 0.06 * height)));
   let twist = 0; // of the segment about the branch, which the rings undo
   let climbed = 0; // length from the base of the branch
   let ringAt = -Infinity; // the same of the last ring
   // At a joint both segments agree on the radius: no steps in the bark. What carries nothing at its end ends thin.
-  const radiusAt = (/** @type {number} */ s) =>
-    s === from ? baseRadius : s === end ? thin * radius[2 * s - 1] : 0.5 * (radius[2 * s] + radius[2 * s - 1]);
+  const radiusAt = (/** @type {number} */ s) => (s === end ? thin * radius[2 * s - 1] : radius[2 * s]);
   for (let s = from; s < end; s++) {
     const long = length[s];
     const turnTo = (/** @type {number} */ other) => between(rest, STRIDE * s + 4, rest, STRIDE * other + 4);
-    const isFoot = s === from;
-    const last = turnTo(isFoot ? (isStem ? s : arrays.branch_base_segment[branch]) : s - 1);
+    const last = turnTo(s > from ? s - 1 : isStem ? s : arrays.branch_base_segment[branch]);
     // Wood bends evenly from the direction of the segment before, at a fork that of the parent, to that of the next one.
     const [before, after] = [last, turnTo(Math.min(s + 1, end - 1))].map((turn) => turned(turn, [1, 0, 0]));
-    if (!isFoot) twist -= 2 * Math.atan2(last[0], last[3]);
-    const { open } = shade(rest.subarray(STRIDE * s, STRIDE * s + 3));
-    const shares = isStem && isFoot ? FOOT_RINGS.map((/** @type {number} */ each) => (each * baseRadius) / long) : BENDS;
+    twist -= 2 * Math.atan2(last[0], last[3]);
+    const { open } = shade(rest.subarray(STRIDE * s));
+    const shares = isStem && s === from ? FOOT_RINGS.map((/** @type {number} */ each) => (each * baseRadius) / long) : BENDS;
     for (const share of s === end - 1 ? [...shares, 1] : shares) {
       const at = climbed + share * long;
       if (share > 1 || (share < 1 && at - ringAt < RING_SPACING * point)) continue;

@@ -45,8 +45,7 @@ export const leafShare = ({ form }, along, isFlowering) =>
  * @param {Look} look @param {number} long length of a card [m] */
 export function leavesAlong(look, long) {
   const least = look.form in IN_LEAFLETS ? 8 : look.has_needles ? 3 : 1;
-  const wanted = long / look.leaf_size;
-  return ALONG.find((/** @type {number} */ along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
+  return ALONG.find((/** @type {number} */ along) => along >= Math.max(least, long / look.leaf_size)) ?? ALONG[ALONG.length - 1];
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
@@ -123,9 +122,8 @@ class Brush {
   /** A colour of a leaf. @param {number} light @param {number} young 0 to 1, the share of the colour of a fresh one */
   color(light, young) {
     const { random, base, fresh } = this;
-    const own = light * (0.85 + 0.3 * random());
-    const mixed = Math.min(1, young + 0.3 * random());
-    return css(base.map((c, i) => c + mixed * (fresh[i] - c)), own);
+    const mixed = young + 0.3 * random();
+    return css(base.map((c, i) => c + mixed * (fresh[i] - c)), light * (0.85 + 0.3 * random()));
   }
 
   /** Paint in another frame. @param {number} x @param {number} y @param {number} turn @param {number} scale
@@ -182,8 +180,8 @@ class Brush {
     let side = 1;
     for (let x = 0.02; x < 0.9; x += 0.45 * apart, side = -side) {
       const lean = side * leaning * (0.8 + 0.2 * random());
-      const reach = (0.7 + 0.3 * random()) * Math.min(half * Math.sin(Math.PI * (0.12 + 0.88 * x) ** 0.85) ** 0.7, (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
-      if (reach > 0.03) shoots.push([x, 0, lean, Math.min(reach, 1.1 - x)]);
+      const reach = ((0.7 + 0.3 * random()) * (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
+      shoots.push([x, 0, lean, Math.min(reach, 1.1 - x)]);
       for (let far = apart; far < reach - 0.5 * apart; far += apart) {
         shoots.push([x + far * Math.cos(lean), far * Math.sin(lean), lean - 0.8 * side, 0.5 * (reach - far)]);
       }
@@ -192,10 +190,10 @@ class Brush {
       for (const [x, y, lean, reach] of shoots) {
         this.at(x, y, lean, 1, () => {
           if (!isUpper) this.line(reach, 0.02 * apart + 0.003, css(twig, 0.7));
-          const count = Math.max(5, Math.round((isUpper ? 0.6 : 0.9) * reach / wide));
+          const count = Math.max(5, ((isUpper ? 0.6 : 0.9) * reach) / wide);
           for (let i = 0; i < count; i++) {
             const far = (i + random()) / count;
-            const out = Math.min(1, 0.5 * Math.hypot(x, y) + 0.55 * far);
+            const out = 0.5 * Math.hypot(x, y) + 0.5 * far;
             const color = this.color((isUpper ? 0.72 : 0.45) + 0.4 * out, 0.3 * far);
             const tilt = (i % 2 ? 1 : -1) * tilted * (0.6 + 0.4 * random()) * (isUpper ? 0.8 : 1);
             this.at(far * reach, 0, tilt, 1, () => this.line(long * (0.6 + 0.4 * random()), wide, color));
@@ -260,11 +258,8 @@ class Brush {
     for (let i = 0; i < 240; i++) {
       const up = random();
       const reach = half * (1 - up) ** 0.6;
-      const light = 0.75 + 0.25 * random();
-      context.fillStyle = css(i % 9 ? [0.9, 1, 0.69] : [0.85, 0.74, 0.5], light);
-      context.beginPath();
-      context.arc(middle + reach * (2 * random() - 1), 0.46 - 0.9 * up, 0.016, 0, 7);
-      context.fill();
+      context.fillStyle = css(i % 9 ? [0.9, 1, 0.69] : [0.85, 0.74, 0.5], 0.75 + 0.25 * random());
+      context.fillRect(middle + reach * (2 * random() - 1), 0.45 - 0.9 * up, 0.03, 0.03);
     }
   }
 
