@@ -48,9 +48,11 @@ const {
   BROWSED, LEAST_BROWSED,
   /** How far a card bends down at its end, over its length. */
   BOW,
-} = /** @type {Record<string, number>} */ (numbers.foliage);
+} = /** @type {Record<string, any>} */ (numbers.foliage);
 /** Whether a tree weeps. @param {Look} look */
 const weeps = ({ droop = 0 }) => droop > WEEPS;
+/** Whether twigs hang straight down. @param {Look} look */
+const dangles = (look) => weeps(look) || (look.is_potted && hangs(look));
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Numbers per vertex of a card. */
@@ -84,7 +86,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
   const boughOf = boughs(kind, rest);
   const leaves = leafShare(look, along, isFlowering); // part of the picture, whose rest are flowers
   const candle = candleCorners(CANDLE * wholeLeaf(look));
-  const { lowest, soil } = lowestLeaves(look, rest[2], high[2]);
+  const lowest = lowestLeaves(look, rest[2], high[2]);
   const values = /** @type {number[]} */ ([]);
   const faces = /** @type {number[][]} */ ([]);
   for (const shoot of shoots) {
@@ -108,7 +110,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       if (!part) twig = twigs[Math.floor(VARIETY * random())];
       const corners = isSpread ? (card < 0 ? axis : twig[part]) : cardCorners(spray, shoot.phase, card, isPlain ? shapes.triangle : shapes.square);
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
-      if (isSpread && end[2] < soil) continue;
+      if (isSpread && end[2] < 0.4 * rest[2] + 0.6 * lowest) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c]) + (BOUGH / bough.radius) * (end[c] - bough.centre[c])));
       // Leaves within a clump are darker than those at its surface.
@@ -133,12 +135,11 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
   return { mesh: { values, indices: mixed(faces, random).flat() }, along, isSpread };
 }
 
-/** Heights below which there is no clump of leaves, and no leaf of one [m]; a tree in a pot has no such limit.
+/** Height below which there is no clump of leaves [m]; a tree in a pot has no such limit.
  * @param {Look} look @param {number} foot height of the foot of the tree @param {number} top */
 function lowestLeaves(look, foot, top) {
-  if (look.is_potted) return { lowest: -Infinity, soil: -Infinity };
-  const browsed = weeps(look) ? LEAST_BROWSED : Math.min(BROWSED, 0.11 * (top - foot));
-  return { lowest: foot + browsed, soil: foot + 0.6 * browsed };
+  if (look.is_potted) return -Infinity;
+  return foot + (weeps(look) ? LEAST_BROWSED : Math.min(BROWSED, 0.11 * (top - foot)));
 }
 
 /** Finds the bough of a segment, the longest line of its ancestors that bears few enough clusters: the middle of these, and the radius
@@ -176,10 +177,10 @@ function leafyShoot(kind, rest, i) {
   const own = [0, 0, 0, 1];
   multiply(rest, STRIDE * carrier[i] + 4, [x, y, z, w], 0, own);
   const at = leafPlace(kind, rest, i);
-  const isWeeping = weeps(lookOf(kind));
-  // Twigs of a weeping tree hang straight down from where they grow.
-  if (isWeeping) turned(own, [1, 0, 0]).forEach((each, c) => (at[c] -= 0.5 * sizes[i] * (each + Number(c > 1))));
-  return { segment: carrier[i], at, frame: isWeeping ? DOWN : own, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
+  const isHanging = dangles(lookOf(kind));
+  // Some twigs hang straight down from where they grow.
+  if (isHanging) turned(own, [1, 0, 0]).forEach((each, c) => (at[c] -= 0.5 * sizes[i] * (each + Number(c > 1))));
+  return { segment: carrier[i], at, frame: isHanging ? DOWN : own, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
 }
 
 /** Segments of a conifer's dead stubs, which bear no needles: limbs on the stem below the longest one and much shorter, with
@@ -258,14 +259,14 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, (look.form === "tufts" ? 2.6 : SHOOT) * look.leaf_size / mean);
+    const long = Math.max(small, (SHOOT[look.form] ?? SHOOT.usual) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
     return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
   }
-  const size = (look.is_potted ? 0.85 : 1) * leaf / mean;
+  const size = leaf / mean;
   const leaves = (FULLNESS * Math.PI) / (4 * FILLED * alone.width * size * size);
-  const spray = { ...alone, length: size };
+  const spray = { ...alone, length: (look.is_potted ? 0.65 : 1) * size };
   return { each: Math.max(1, Math.min(each, Math.round(leaves))), along: 1, spray, isSpread: true };
 }
 
@@ -300,9 +301,9 @@ function leafyTwig(look, { length, width }, random) {
   const spread = hangs(look) ? 1.4 - 1.2 * droop : look.has_needles ? 0.6 : 1.4;
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
     const far = bare + (1 - bare) * ((i + random()) / ON_TWIG) ** (hangs(look) ? 1 : 0.5);
-    const away = unit(unit(along).map((each, c) => each + spread * some() - (look.is_potted && c > 1 ? 2.2 * droop : 0)));
+    const away = unit(unit(along).map((each, c) => each + spread * some() + Number(c > 1 && look.form === "fronds")));
     // Leaves face outward and up, the more so the flatter the cluster is.
-    const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1)), away));
+    const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1 && !dangles(look))), away));
     const normal = cross(away, across);
     return cornersOf((u, v) => ({
       place: hanging(foot.map((each, c) => each + far * along[c] + length * ((u - 0.15) * away[c] + v * width * across[c])), BOW * length * u),

@@ -17,7 +17,9 @@ const {
   BARK_TILE,
   /** Heights of the rings at the foot of a stem, over its radius. */
   FOOT_RINGS,
-  /** How far the rings of wood lie beside its axis, and how much they differ, over their radius. */
+  /** Places of the rings along a segment, over its length. */
+  BENDS,
+  /** How far the rings of wood lie beside its axis, over their radius. */
   CROOKED,
   /** Roots that spread from the foot of a stem. */
   ROOTS,
@@ -99,44 +101,45 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
   const isStem = parents[branch] < 0;
   const thin = arrays.branch_base_segment.includes(end - 1) ? 1 : 0.4;
   const points = baseRadius / point; // of its radius on the picture
-  const sides = points > 12 ? 20 : points > 4.8 ? 12 : points > 2 ? 6 : RIBBON;
+  const sides = points > 8 ? 16 : points > 2 ? 6 : RIBBON;
   const corners = sides === RIBBON ? 2 : sides + 1; // a tube is closed by a second first corner
   const thickness = Math.min(1, baseRadius / (BARKED * height));
-  const tile = Math.min(BARK_TILE, 0.06 * height);
-  const tilesAround = Math.max(1, Math.round((2 * Math.PI * baseRadius) / tile));
+  const tilesAround = Math.max(1, Math.round((2 * Math.PI * baseRadius) / Math.min(BARK_TILE, 0.06 * height)));
   let twist = 0; // of the segment about the branch, which the rings undo
   let climbed = 0; // length from the base of the branch
-  let ringAt = 0; // the same of the last ring
-  for (let s = from; s <= end; s++) {
-    const isTip = s === end;
-    const segment = Math.min(s, end - 1);
-    if (s > from) climbed += length[s - 1];
-    if (s > from && !isTip) {
-      const bend = between(rest, STRIDE * (s - 1) + 4, rest, STRIDE * s + 4);
-      twist += 2 * Math.atan2(bend[0], bend[3]);
-      if (climbed - ringAt < RING_SPACING * point) continue;
-    }
-    ringAt = climbed;
-    // At a joint both segments agree on the radius: no steps in the bark. What carries nothing at its end ends thin.
-    const atJoint = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : baseRadius;
-    const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
-    for (const up of isStem && s === from ? FOOT_RINGS : [0]) {
-      if (up * baseRadius > length[from]) continue;
-      const above = climbed / baseRadius + up;
-      const low = Math.exp(-0.7 * above);
-      const flare = isStem ? low : 0;
-      const [beside, behind, swollen] = [0.19, 0.31, 0.83].map((often) => (isTip ? 0 : CROOKED * (1 - low)) * Math.sin(often * above + branch));
-      const ringRadius = Math.max(isTip ? thin * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.8 * flare + 0.2 * swollen);
+  let ringAt = -Infinity; // the same of the last ring
+  // At a joint both segments agree on the radius: no steps in the bark. What carries nothing at its end ends thin.
+  const radiusAt = (/** @type {number} */ s) => (s === end ? thin * radius[2 * s - 1] : radius[2 * s]);
+  for (let s = from; s < end; s++) {
+    const long = length[s];
+    const turnTo = (/** @type {number} */ other) => between(rest, STRIDE * s + 4, rest, STRIDE * other + 4);
+    const last = turnTo(s > from ? s - 1 : isStem ? s : arrays.branch_base_segment[branch]);
+    // Wood bends evenly from the direction of the segment before, at a fork that of the parent, to that of the next one.
+    const [before, after] = [last, turnTo(Math.min(s + 1, end - 1))].map((turn) => turned(turn, [1, 0, 0]));
+    twist -= 2 * Math.atan2(last[0], last[3]);
+    const { open } = shade(rest.subarray(STRIDE * s));
+    const shares = isStem && s === from ? FOOT_RINGS.map((/** @type {number} */ each) => (each * baseRadius) / long) : BENDS;
+    for (const share of s === end - 1 ? [...shares, 1] : shares) {
+      const at = climbed + share * long;
+      if (share > 1 || (share < 1 && at - ringAt < RING_SPACING * point)) continue;
+      ringAt = at;
+      const above = at / baseRadius;
+      const flare = isStem ? Math.exp(-0.7 * above) : 0;
+      const wide = (1 - share) * radiusAt(s) + share * radiusAt(s + 1);
+      const ringRadius = Math.max(wide, LEAST_RADIUS * pixel) * (1 + 0.8 * flare);
+      const drift = ringRadius * CROOKED * Math.sin(0.31 * above);
+      const [aside, upwards] = [Math.cos, Math.sin].map((of, c) => drift * of(0.19 * above - twist)
+        + 0.5 * long * share * (1 - share) * ((1 - share) * before[c + 1] - share * after[c + 1]));
       for (let k = 0; k < corners; k++) {
         const angle = (2 * Math.PI * k) / sides - twist;
         // At the foot of a stem rings bulge into roots.
         const bulge = 1 + 0.3 * flare * Math.cos(ROOTS * angle + Math.sin(angle));
-        const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, 0, thickness - 2]
-          : [ringRadius * (bulge * Math.cos(angle) + behind), ringRadius * (bulge * Math.sin(angle) + beside), thickness];
-        values.push(placer.slots[segment], isTip ? length[segment] : up * baseRadius, ...corner);
+        const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, upwards, thickness - 2]
+          : [ringRadius * bulge * Math.cos(angle) + aside, ringRadius * bulge * Math.sin(angle) + upwards, thickness];
+        values.push(placer.slots[s], share * long, ...corner);
         values.push((tilesAround * k) / sides, (above * tilesAround) / (2 * Math.PI), open);
       }
-      if (s === from && !up) continue;
+      if (!at) continue;
       // Two triangles between each pair of corners of this ring and of the one before.
       const ring = values.length / PER_VERTEX - corners;
       for (let above = ring; above < ring + corners - 1; above++) {
@@ -144,5 +147,6 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
         indices.push(below, below + 1, above, below + 1, above + 1, above);
       }
     }
+    climbed += long;
   }
 }

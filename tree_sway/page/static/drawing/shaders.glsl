@@ -102,7 +102,7 @@ uniform vec3 horizon;
 out vec4 color;
 
 #part bark.vertex hung
-in vec4 ring; // along, across y, across z, thickness; of a ribbon: along, across, 0, thickness - 2
+in vec4 ring; // along, across y, across z, thickness; of a ribbon: along, across, up, thickness - 2
 in vec3 skin; // place on the bark, how open to the sky
 uniform vec2 picked; // rows of the first and last segment of the highlighted branch
 out vec3 normal;
@@ -124,7 +124,8 @@ void main() {
   p += root.w * ring.x * axis;
   float thickness = ring.w;
   if (ring.w < -0.5) {
-    // A ribbon faces the eye, or the sun for the shadow.
+    // A ribbon faces the eye, or the sun for the shadow, and bends upwards or downwards.
+    p += root.w * ring.z * turned(q, vec3(0.0, 0.0, 1.0));
     vec3 back = normalize(shadowArea.w < 0.5 ? eye - p : light);
     vec3 across = normalize(cross(back, axis) + vec3(0.0, 0.0, 1e-6));
     p += root.w * ring.y * across;
@@ -325,11 +326,13 @@ void main() {
   float small = length(fwidth(at));
   float cells = exp2(floor(0.5 - log2(small)));
   float chance = fract(43758.5453 * sin(dot(floor(at * cells), vec2(12.9898, 78.233))));
-  float mixed = min(1.0, 0.3 * max(0.0, log2(180.0 * small)));
+  // Sooner in a large picture, which has many leaves, than in that of a single one.
+  float points = float(textureSize(leaves, 0).x);
+  float mixed = min(1.0, 0.3 * max(0.0, log2(7e-4 * points * points * small)));
   float least = mix(0.5, 0.06 + 0.88 * chance, mixed);
   float shown = edge * leaf.a;
   // The rim of a leaf covers a part of its pixel.
-  float cover = clamp(0.5 + (shown - least) / max(fwidth(shown), 0.02), 0.0, 1.0);
+  float cover = clamp(0.5 + (shown - least) / max(fwidth(shown), 0.02 + 0.6 * mixed), 0.0, 1.0);
   if (cover < 0.05) discard;
   float own = 1.0 + 0.4 * (fract(17.0 * chance) - 0.5) * mixed;
   color = vec4(leaf.rgb * own / max(leaf.a, 0.01) * lit + veil, cover);

@@ -15,6 +15,9 @@ const {
   LEAF_SHARE,
   /** Width of a small card of short needles over that of others. */
   TWIG,
+  /** Short needles: gap between side shoots over the length of a shoot, and the least of the picture; length of a needle over the
+   * gap; how far side shoots lean from their axis, and needles [rad]. */
+  NEEDLES,
   /** Length of the part of a shoot that long needles clothe, over their length. */
   BRUSH,
   /** Number of layers of leaves; the lowest is shaded by the others. */
@@ -31,7 +34,7 @@ export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form
 /** Width of a picture over its length.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} [isSpread] of small cards */
 export const pictureWidth = ({ form, slenderness, spray }, along, isSpread = false) =>
-  along > 1 ? spray.width * (isSpread && (form === "needles" || form === "fronds") ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
+  along > 1 ? spray.width * (isSpread && form === "needles" ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
 /** Part of the width of a picture that has leaves; the flowers of a horse chestnut are beside them.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} isFlowering */
@@ -42,8 +45,7 @@ export const leafShare = ({ form }, along, isFlowering) =>
  * @param {Look} look @param {number} long length of a card [m] */
 export function leavesAlong(look, long) {
   const least = look.form in IN_LEAFLETS ? 8 : look.has_needles ? 3 : 1;
-  const wanted = long / look.leaf_size;
-  return ALONG.find((/** @type {number} */ along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
+  return ALONG.find((/** @type {number} */ along) => along >= Math.max(least, long / look.leaf_size)) ?? ALONG[ALONG.length - 1];
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
@@ -56,8 +58,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.58, 0, 0, 0.42, 26);
-  else if (look.form === "tufts") brush.tufts();
+  else if (look.form === "tufts") brush.tufts(along < 5 ? places.tuft : places.tufts);
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
   else brush.spray(1 / along, isSpread ? 0.65 : 0.75);
@@ -121,9 +122,8 @@ class Brush {
   /** A colour of a leaf. @param {number} light @param {number} young 0 to 1, the share of the colour of a fresh one */
   color(light, young) {
     const { random, base, fresh } = this;
-    const own = light * (0.85 + 0.3 * random());
-    const mixed = Math.min(1, young + 0.3 * random());
-    return css(base.map((c, i) => c + mixed * (fresh[i] - c)), own);
+    const mixed = young + 0.3 * random();
+    return css(base.map((c, i) => c + mixed * (fresh[i] - c)), light * (0.85 + 0.3 * random()));
   }
 
   /** Paint in another frame. @param {number} x @param {number} y @param {number} turn @param {number} scale
@@ -171,17 +171,17 @@ class Brush {
    * lighter at the tips. @param {number} shoot length of needles and shoot together */
   needles(shoot) {
     const { look: { form, twig }, random, half } = this;
-    const isFrond = form === "fronds";
-    const apart = isFrond ? 0.45 * shoot : Math.max(0.12, 0.95 * shoot);
-    const long = (isFrond ? 0.4 : 0.22) * apart;
+    const [gap, least, share, leaning, tilted] = NEEDLES[form];
+    const apart = Math.max(least, gap * shoot);
+    const long = share * apart;
     const wide = Math.max(0.1 * long, 0.004);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
-    for (let x = 0.02; x < 0.9; x += 0.36 * apart, side = -side) {
-      const lean = side * (isFrond ? 0.5 : 0.75 + 0.25 * random());
-      const reach = (0.7 + 0.3 * random()) * Math.min(half * Math.sin(Math.PI * (0.12 + 0.88 * x) ** 0.85) ** 0.7, (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
-      if (reach > 0.03) shoots.push([x, 0, lean, Math.min(reach, 1.1 - x)]);
+    for (let x = 0.02; x < 0.9; x += 0.45 * apart, side = -side) {
+      const lean = side * leaning * (0.8 + 0.2 * random());
+      const reach = ((0.7 + 0.3 * random()) * (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
+      shoots.push([x, 0, lean, Math.min(reach, 1.1 - x)]);
       for (let far = apart; far < reach - 0.5 * apart; far += apart) {
         shoots.push([x + far * Math.cos(lean), far * Math.sin(lean), lean - 0.8 * side, 0.5 * (reach - far)]);
       }
@@ -190,12 +190,12 @@ class Brush {
       for (const [x, y, lean, reach] of shoots) {
         this.at(x, y, lean, 1, () => {
           if (!isUpper) this.line(reach, 0.02 * apart + 0.003, css(twig, 0.7));
-          const count = Math.max(5, Math.round((isUpper ? 0.6 : 0.9) * reach / wide));
+          const count = Math.max(5, ((isUpper ? 0.6 : 0.9) * reach) / wide);
           for (let i = 0; i < count; i++) {
             const far = (i + random()) / count;
-            const out = Math.min(1, 0.5 * Math.hypot(x, y) + 0.55 * far);
+            const out = 0.5 * Math.hypot(x, y) + 0.5 * far;
             const color = this.color((isUpper ? 0.72 : 0.45) + 0.4 * out, 0.3 * far);
-            const tilt = (i % 2 ? 1 : -1) * (isFrond ? 0.45 : 0.55 + 0.5 * random()) * (isUpper ? 0.7 : 1);
+            const tilt = (i % 2 ? 1 : -1) * tilted * (0.6 + 0.4 * random()) * (isUpper ? 0.8 : 1);
             this.at(far * reach, 0, tilt, 1, () => this.line(long * (0.6 + 0.4 * random()), wide, color));
           }
         });
@@ -220,16 +220,16 @@ class Brush {
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
         const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1);
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.012, color));
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.009, color));
       }
     }
   }
 
-  /** Tufts at the end of a shoot and of its side shoots. */
-  tufts() {
-    for (const [x, y] of places.tufts) {
-      const [far, beside] = [x + 0.08 * this.random(), this.half * y];
-      this.tuft(far, beside, Math.atan2(0.6 * beside, 0.4), y ? 0.27 : 0.36, 20);
+  /** Tufts at the ends of side shoots: place, length of the needles and how many there are. @param {number[][]} ends */
+  tufts(ends) {
+    for (const [x, y, long, count] of ends) {
+      const beside = this.half * y;
+      this.tuft(x, beside, Math.atan2(0.6 * beside, 0.4), long, count);
     }
   }
 
@@ -239,10 +239,10 @@ class Brush {
     const blade = () => {
       context.fillStyle = this.color(light, 0);
       context.fill(this.blades[0]);
-      // One half lies in the shade of the other; the midrib is light.
+      // One half lies in the shade of the other; the midrib is light, and so are the veins but of evergreen leaves.
       context.fillStyle = "rgb(0 0 0 / 14%)";
       context.fill(this.blades[1]);
-      this.line(VEINS, 0.02, "rgb(255 255 200 / 25%)");
+      this.line(look.autumn ? VEINS : 0.9, 0.015, "rgb(255 255 200 / 15%)");
     };
     this.at(0, 0, 0, long, () => {
       if (look.form in IN_LEAFLETS) this.leaflets(blade, this.color(light, 0));
@@ -258,18 +258,15 @@ class Brush {
     for (let i = 0; i < 240; i++) {
       const up = random();
       const reach = half * (1 - up) ** 0.6;
-      const light = 0.75 + 0.25 * random();
-      context.fillStyle = css(i % 9 ? [0.9, 1, 0.69] : [0.85, 0.74, 0.5], light);
-      context.beginPath();
-      context.arc(middle + reach * (2 * random() - 1), 0.46 - 0.9 * up, 0.016, 0, 7);
-      context.fill();
+      context.fillStyle = css(i % 9 ? [0.9, 1, 0.69] : [0.85, 0.74, 0.5], 0.75 + 0.25 * random());
+      context.fillRect(middle + reach * (2 * random() - 1), 0.45 - 0.9 * up, 0.03, 0.03);
     }
   }
 
   /** Leaflets in pairs along a stalk, or like fingers at its end. @param {() => void} blade paints one
    * @param {string} color of the stalk */
   leaflets(blade, color) {
-    const { look: { form, slenderness }, random } = this;
+    const { look: { form, slenderness, leaf_size: size }, random } = this;
     if (form === "digitate") {
       this.line(0.36, 0.016, color);
       for (const [lean, share] of places.digitate) {
@@ -277,7 +274,8 @@ class Brush {
       }
       return;
     }
-    const pairs = slenderness < 0.35 ? 5 : 4;
+    // The larger a leaflet is, the fewer there are.
+    const pairs = size * slenderness > 0.035 ? 3 : 5;
     const long = 1.1 / pairs;
     this.line(0.98 - long, 0.02, color);
     for (let i = 0; i <= 2 * pairs; i++) {
