@@ -17,7 +17,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.column_names import folded
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES, why_missing
-from tree_sway.files.scenes.inventory.places import Places, places_of
+from tree_sway.files.scenes.inventory.places import about_centre, Places, places_of
 from tree_sway.files.scenes.inventory.sizes import diameters_of, fill_heights, heights_of
 from tree_sway.files.scenes.inventory.species_names import species_of_rows
 from tree_sway.files.table_file import TextTable
@@ -114,7 +114,9 @@ def inventory_of(
     column, or if no row is left.
     """
     given = given or {}
-    missing = [each for each in missing_columns(table) if each != SPECIES]
+    # Among columns of other things, as of lamps, a place and a height do not make a tree.
+    are_others = table.find_all('other_thing')
+    missing = [each for each in missing_columns(table) if are_others or each != SPECIES]
     if not needs_place:
         missing = [each for each in missing if 'place' not in each]
     if missing:
@@ -130,6 +132,9 @@ def inventory_of(
     keys = [wood[each].key if each in wood else each for each in names]
     diameter = diameters_of(columns, places.is_in_states)
     height = heights_of(columns, diameter, places.is_in_states)
+    if found is None:
+        found = about_centre(columns)
+        places = found or places
     for row in np.flatnonzero(~np.isfinite(places.x + places.y)).tolist():
         columns.leave_out(row, 'no place', _why_no_place(columns, row))
     height = np.full(columns.n_rows, np.nan) if height is None else height

@@ -35,8 +35,8 @@ from tree_sway.files.trees.tree_options import FITTED
 
 
 def _names(line: str) -> dict[str, str]:
-    """Names of columns by their letters and digits alone."""
-    return {re.sub(r'[\W_]', '', cell).lower(): cell for cell in re.split('[,;\t]', line)}
+    """Names of columns by their letters and digits alone; ``SegmentID`` is an ``id``."""
+    return {re.sub(r'[\W_]|segment', '', cell.lower()): cell for cell in re.split('[,;\t]', line)}
 
 
 def _is_named(head: str) -> bool:
@@ -44,7 +44,7 @@ def _is_named(head: str) -> bool:
     lines = (line for line in head.splitlines() if line.strip() and not line.startswith('#'))
     names = _names(next(lines, ''))
     ends = any({f'{end}{axis}' for axis in 'xyz'} <= names.keys() for end in ('end', 'axis'))
-    return ends and {'startx', 'starty', 'startz', 'radius', 'parent'} <= names.keys()
+    return ends and _OF_CYLINDERS <= {each.removesuffix('id') for each in names}
 
 
 def _read(path: Path) -> tuple[Cylinders, ...]:
@@ -95,6 +95,7 @@ def _of_one_order(parent: Ints, order: Floats, size: Floats) -> NDArray[np.bool_
     return np.isin(np.arange(len(parent)), found)
 
 
+_OF_CYLINDERS = {'startx', 'starty', 'startz', 'radius', 'parent'}
 ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read, FITTED)
 _OF_FOREST = has_columns('ID', 'parentID', 'startX', 'branchOrder')
 SIMPLEFOREST = FileFormat('simpleforest', (), _OF_FOREST, _read, FITTED)
