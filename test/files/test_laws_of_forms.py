@@ -147,6 +147,11 @@ def test_lines_whose_form_is_published(
     np.testing.assert_allclose(np.diff(record.time), step)
 
 
+def test_a_wind_relative_to_its_mount_is_no_true_wind(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match='no column for the speed and none for the direction'):
+        read_wind(written(tmp_path, 'time,relative wind speed,relative wind direction\n0,5,90\n'))
+
+
 @pytest.mark.parametrize(('covariance', 'is_turned'), [('-1.0', False), ('0.01', True)])
 def test_echoed_messages(tmp_path: Path, covariance: str, is_turned: bool) -> None:
     zeros = ''.join('- 0.0\n' for _ in range(8))
