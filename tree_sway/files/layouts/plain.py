@@ -44,6 +44,7 @@ _KNOWN = (
         'wind_x',
         'wind_y',
         'gust',
+        'apparent_wind',
         'value',
         'species',
         'genus',
