@@ -109,6 +109,8 @@ _PATTERNS = {quantity: re.compile(known) for quantity, known in _KNOWN['patterns
 _ROLES = {folded(word): role for role, words in _KNOWN['words'].items() for word in words.split()}
 """Words of many languages that names consist of, folded, and letters for what they say."""
 _WORD = re.compile('|'.join(sorted(_ROLES, key=len, reverse=True)))
+_WORD_ENDS = re.compile(r'[\s_]+|\.(?=\D)|(?<=[a-z])(?=[A-Z][a-z]{2})')
+"""Between the words of a name, as in ``pitchDegrees``."""
 _SPAN = re.compile(r'\d+(minutes?|mins?|mn|hours?|hr|m|(?=\D|$))')
 """Number, height or length of time in a name."""
 
@@ -239,7 +241,7 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
     """
     if len(name) > _LONGEST_NAME:  # a header without end
         return '', ''
-    words = re.split(r'[\s_]+|\.(?=\D)', name.strip().lower())
+    words = _WORD_ENDS.sub('_', name.strip()).lower().split('_')
     whole = folded(name)
     found = '', ''
     for end in range(len(words), 0, -1):

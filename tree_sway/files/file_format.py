@@ -110,7 +110,7 @@ def format_of(
                 return known
         raise ParameterError(f"unknown {kind} format '{wanted}'", cure=f'use {names}')
     head = read_head(path) if head is None else head
-    what, cure = foreign_file(path, head) if kind == 'tree' and head else ('', '')
+    what, cure = foreign_file(path, head or ' ')
     if what:
         raise FormatError(f'{what}, not a {kind}', cure=cure)
     with_points = re.sub(r'(?<=\d),(?=\d)', '.', head)

@@ -57,18 +57,18 @@ READ = {
         '200540,21,Alive,Quercus palustris,40.79411067,-73.81867946\n',
         [('red_maple', None), ('oak', None)],
     ),
-}
-
-REFUSED = {
     'FIA, with all its columns': (
         'CN,PLT_CN,INVYR,STATECD,UNITCD,COUNTYCD,PLOT,SUBP,TREE,AZIMUTH,DIST,STATUSCD,SPCD,DIA,HT\n'
         '1,9,2019,10,1,1,5,1,1,45,10.5,1,318,9.84,39.4\n',
-        'the place .* among',
+        [('maple', 39.4 * 0.3048)],
     ),
     'FIA, by codes and azimuths': (
         'CN,TREE,SPCD,DIA,HT,AZIMUTH,DIST\n1,1,131,9.6,55,120,10.2\n',
-        'the place .* among',
+        [('pine', 55 * 0.3048)],
     ),
+}
+
+REFUSED = {
     'lidR, tree tops without species': (
         'treeID,X,Y,Z\n1,273364.5,5274361.0,18.2\n',
         'the species and none for the size .* among',

@@ -41,6 +41,8 @@ def table_of(lines: list[str], source: str) -> TextTable:
         what, cure = foreign_file(Path(source), '\n'.join(lines[:3]) or ' ')
         if what:
             raise FormatError(what, cure=cure)
+        if '---' in lines:  # below each message, as ROS echoes them
+            lines = [' '.join(each.split()) for each in '\n'.join(lines).split('\n---')]
         return widened((_layout_of(lines[:_HEAD]) or PLAIN).read(lines, source))
 
 
@@ -49,5 +51,5 @@ def looks_like_wind(head: str) -> bool:
     lines = head.replace('\r\n', '\n').replace('\r', '\n').split('\n')
     found = _layout_of(lines[:_HEAD])
     if found is JSON:
-        return any(word in head.lower() for word in ('wind', 'wd', '"obs'))
+        return any(word in head.lower() for word in ('wind', '"wd', '_wd', '"obs'))
     return found is not None

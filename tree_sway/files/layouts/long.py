@@ -21,6 +21,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.column_names import folded, is_named, SENDERS
 from tree_sway.files.json_values import text_of
+from tree_sway.files.row_times import time_columns
 from tree_sway.files.table_file import TextTable
 
 _STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
@@ -72,7 +73,9 @@ def widened(table: TextTable) -> TextTable:
         return table
     units: dict[str, str] = {}
     clock, value = (each[0] for each in wanted)
-    values = _values(short, (clock, name, value), units)
+    found = time_columns(table)
+    parts, form = found[:2] if found and found[1] else ([clock], '{0}')  # a date may be apart
+    values = _values(short, (*parts, name, value), form, units)
     return wide_table(values, table.source, table.columns[clock], units)
 
 
@@ -89,8 +92,10 @@ def unit_for(name: str, units: Mapping[str, Any]) -> str:
     return text_of(units.get(name)) or text_of(next(same, ''))
 
 
-def _values(table: TextTable, wanted: Sequence[int], units: dict[str, str]) -> Iterator[Value]:
-    """Yield the values of a long table, and note the units of their names."""
+def _values(
+    table: TextTable, wanted: Sequence[int], form: str, units: dict[str, str]
+) -> Iterator[Value]:
+    """Yield the values of a long table, whose times have a form, and note their units."""
     names = table.columns
     senders = [i for i, name in enumerate(names) if folded(name) in SENDERS[:-1]]
     senders = [each for each in senders if each not in wanted]
@@ -99,9 +104,10 @@ def _values(table: TextTable, wanted: Sequence[int], units: dict[str, str]) -> I
     for line, text in zip(table.numbers, table.texts, strict=True):
         cells = table.split(text)
         # There is a header above each of several tables.
-        if len(cells) < len(names) or cells[wanted[2]] == table.columns[wanted[2]]:
+        if len(cells) < len(names) or cells[wanted[-1]] == table.columns[wanted[-1]]:
             continue
-        time, name, value = (cells[each] for each in wanted)
+        *clock, name, value = (cells[each] for each in wanted)
+        time = form.format(*clock)
         sender = ' '.join(cells[each] for each in senders)
         first = sender_of.setdefault(name, sender)
         if sender != first:

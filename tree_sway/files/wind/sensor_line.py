@@ -26,6 +26,12 @@ STAMP = re.compile(
 )
 """Time since 1970 in s or ms, or date and time, that a logger puts before a line."""
 
+_CLOCK = re.compile(
+    r'\$[A-Z]{2}(?:ZDA|RMC),(\d\d)(\d\d)(\d\d(?:\.\d+)?),(?:[^*]*?,)??(\d\d),?(\d\d),?(?:20)?(\d\d)[,*]',
+    re.ASCII,
+)
+"""Time and date of a sentence of a clock or of a satellite receiver."""
+
 ParseLine = Callable[[str], Reading | None]
 """Parse a line; None if it is not about the wind. Never raises."""
 
@@ -69,7 +75,10 @@ def read_sensor_log(
     if not rate > 0.0:
         raise ParameterError(f'rate is {rate:g} Hz', cure='give more than 0')
     found: dict[str, tuple[WindRows, list[str]]] = {}
+    clock = ''
     for number, line in enumerate(read_lines(path), start=1):
+        if told := _CLOCK.search(line):
+            clock = '20{5}-{4}-{3}T{0}:{1}:{2}Z'.format(*told.groups())
         said = parse(line)
         if said is None:
             continue
@@ -79,7 +88,8 @@ def read_sensor_log(
         else:
             rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity(0.0))
             stamp = STAMP.search(line)
-            stamps.append('' if stamp is None else stamp[1])
+            # Of several sentences of a kind after a clock the first alone has its time.
+            stamps.append(stamp[1] if stamp else clock * (clock not in stamps[-1:]))
     there = [kind for kind in kinds if kind in found]
     if not there:
         raise FormatError(

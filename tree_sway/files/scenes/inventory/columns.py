@@ -114,6 +114,7 @@ class InventoryColumns:
         values = np.full(self.n_rows, np.nan)
         units = [''] * self.n_rows
         n_ranges = 0
+        n_several = 0
         unread = list[int]()
         for row, text in enumerate(self.texts(index)):
             found = stems_number(text) if stems else cell_number(text)
@@ -122,6 +123,7 @@ class InventoryColumns:
                     unread.append(row)
                 continue
             values[row], units[row] = found
+            n_several += stems and cell_number(text) is None
             is_range = re.search(r'\S\s*[-/]', text) is not None
             n_ranges += is_range and found == cell_number(text)
         self._drop_nines(values, index)
@@ -129,6 +131,8 @@ class InventoryColumns:
         if unread:
             first = f"{self.line(unread[0])} is '{self.cell(index, unread[0])}'"
             self.note(f'{len(unread)} cells of {name} cannot be read: {first}')
+        if n_several:
+            self.note(f'{n_several} cells of {name} have several stems: one of their section')
         if n_ranges:
             self.note(f'{n_ranges} cells of {name} are ranges: their middles')
         return values, self._in_one_unit(values, units, index, unit)

@@ -54,7 +54,8 @@ def read_geojson(path: Path) -> TextTable:
     found = list_of(inner[listed]) if listed else [inner]
     records = [dict(_cells(record)) for record in map(object_of, found)]
     if listed == 'elements':  # those of ways and relations have no tags
-        records = [each for each in records if any(name.startswith('tags.') for name in each)]
+        tagged = [each for each in records if any(name.startswith('tags.') for name in each)]
+        records = [each for each in tagged if each.get('tags.natural') == 'tree'] or tagged
     if not any(records):
         raise FormatError('no features', cure='export points with properties')
     system = document.get('spatialReference', document.get('crs'))

@@ -64,6 +64,32 @@ def places_of(columns: InventoryColumns) -> Places | None:
     return _of_geometries(columns, next(placed, by_geometry[0]))
 
 
+def about_centre(columns: InventoryColumns) -> Places | None:
+    """
+    Return places by azimuth, clockwise from north, and distance from the centre of a plot.
+
+    Distances without a unit are in feet beside stems in inches. None without such columns; a
+    `FormatError` for trees of several plots.
+    """
+    found = columns.find('azimuth', 'distance')
+    if found is None:
+        return None
+    table = columns.table
+    for index in table.find_all('plot'):
+        if len({*columns.texts(index)}) > 1:
+            raise table.error(
+                f'azimuths are about several centres, by {table.columns[index]}',
+                cure='keep the trees of one, or give x and y',
+            )
+    azimuth, distance = found
+    turn = table.unit_of(azimuth.index, 'azimuth') or 'deg'
+    unit = table.unit_of(distance.index, 'distance') or ('ft' if columns.has_inches else 'm')
+    angle = columns.numbers(azimuth.index)[0] * azimuth.factor
+    away = columns.numbers(distance.index)[0] * table.known_factor('length', unit)
+    columns.note(f'placed from the centre of the plot: azimuths in {turn}, distances in {unit}')
+    return away * np.sin(angle), away * np.cos(angle)
+
+
 def _degrees(columns: InventoryColumns, index: int) -> Floats:
     """Read a column of degrees, decimal or with minutes and seconds: ``52°31'10.5"N``."""
     parts = [_DMS.fullmatch(text.strip()) for text in columns.texts(index)]

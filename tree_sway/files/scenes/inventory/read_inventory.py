@@ -17,7 +17,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.column_names import folded, INVENTORY
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES
-from tree_sway.files.scenes.inventory.places import places_of
+from tree_sway.files.scenes.inventory.places import about_centre, places_of
 from tree_sway.files.scenes.inventory.sizes import diameters_of, fill_heights, heights_of
 from tree_sway.files.scenes.inventory.species_names import species_of_rows
 from tree_sway.files.table_file import TextTable
@@ -114,8 +114,13 @@ def inventory_of(
     column, or if no row is left.
     """
     given = given or {}
+    # Among columns of other things, as of lamps, a place and a height do not make a tree.
+    are_others = table.find_all('other_thing')
     missing = missing_columns(table)
-    if any(each != SPECIES and (needs_place or 'place' not in each) for each in missing):
+    if any(
+        (are_others or each != SPECIES) and (needs_place or 'place' not in each)
+        for each in missing
+    ):
         what = f'no column for {" and none for ".join(missing)} among '
         what += ', '.join(table.columns[:20])
         cure = 'give a row for each tree, with place, species, and height or dbh'
@@ -130,6 +135,9 @@ def inventory_of(
     keys = [wood[each].key if each in wood else each for each in names]
     diameter = diameters_of(columns)
     height = heights_of(columns, diameter)
+    if found is None:
+        found = about_centre(columns)
+        x, y = found or (x, y)
     for row in np.flatnonzero(~np.isfinite(x + y)).tolist():
         columns.leave_out(row, 'no place', _why_no_place(columns, row))
     is_found = fill_heights(columns, height, diameter, keys)

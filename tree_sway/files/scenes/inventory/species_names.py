@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from functools import cache, partial
+import re
 
 from tree_sway.core.species import Species, species_like, species_named
 from tree_sway.errors import SpeciesError
@@ -124,7 +125,8 @@ def _joined(genus: str, epithet: str) -> str:
 
 def _chosen(cells: tuple[str, ...], given: Mapping[str, object]) -> str:
     """First name of a species, else of a broadleaf or conifer, else the first that is there."""
-    parts = [part.strip() for cell in cells for part in cell.split('::') if part.strip()]
+    # A cell may have several names of one species, as a common and a Latin one.
+    parts = [part.strip() for cell in cells for part in re.split(r'::|\|', cell) if part.strip()]
     parts = [part for part in parts if part.lower() not in _NO_EPITHETS]
     for name in parts:
         if name in given:

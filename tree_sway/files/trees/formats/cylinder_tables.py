@@ -13,7 +13,8 @@ length, that of its subtree, continues; without that column, the thickest.
 rTwig writes the models of other programs under names of its own, ``start.x`` or ``start_x``, and
 numbers from 1, the root's parent 0. Without an ``id`` the number is that of the row.
 
-Names are compared by their letters and digits alone.
+Names are compared by their letters and digits alone; SimpleTree (Hackenberg et al. 2015) has
+``SegmentID`` for the ``ID``.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of a table."""
     table = parse_table(read_lines(path), str(path))
     names = {folded(column): column for column in table.columns}
+    names = {name.replace('segment', ''): names[name] for name in names} | names
 
     def columns(word: str) -> Floats:
         return table.strict([names.get(f'{word}{axis}', word) for axis in 'xyz'])
@@ -80,7 +82,10 @@ def _of_one_order(parent: Ints, order: Floats, size: Floats) -> NDArray[np.bool_
 
 ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read, FITTED)
 _OF_FOREST = has_columns('ID', 'parentID', 'startX', 'branchOrder')
-SIMPLEFOREST = FileFormat('simpleforest', (), _OF_FOREST, _read, FITTED)
+_OF_TREE = has_columns('segmentID', 'parentSegmentID', 'startX', 'branchOrder')
+SIMPLEFOREST = FileFormat(
+    'simpleforest', (), lambda head: _OF_FOREST(head) or _OF_TREE(head), _read, FITTED
+)
 _OF_TWIG = has_columns('startX', 'startY', 'startZ', 'radius', 'parent')
 _HAS_END, _HAS_AXIS = has_columns('endX', 'endY', 'endZ'), has_columns('axisX', 'axisY', 'axisZ')
 NAMED = FileFormat(

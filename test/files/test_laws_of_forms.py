@@ -1,0 +1,250 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Laws by which files of makers that nobody knew are read or refused."""
+
+from __future__ import annotations
+
+from json import dumps
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tree_sway.errors import FormatError
+from tree_sway.files.motion import read_motion
+from tree_sway.files.scenes import Inventory, inventory_of, inventory_table
+from tree_sway.files.text_file import read_head
+from tree_sway.files.trees import open_tree
+from tree_sway.files.wind import read_csv_sway, read_wind
+from tree_sway.files.wind.sensor_line import checksum_of
+
+BEGIN = 1_709_647_199  # 2024-03-05 13:59:59 UTC
+
+
+def written(folder: Path, text: str, name: str = 'table.csv') -> Path:
+    (folder / name).write_text(text, encoding='utf-8')
+    return folder / name
+
+
+def inventory(folder: Path, text: str, name: str = 'table.csv') -> Inventory:
+    path = written(folder, text, name)
+    return inventory_of(inventory_table(path, read_head(path)))
+
+
+@pytest.mark.parametrize('other', ['mastTyp', 'LampenNr', 'Lampadaire', 'pole_height'])
+def test_heights_of_other_things_are_no_trees(tmp_path: Path, other: str) -> None:
+    with pytest.raises(FormatError, match='no column for the species among'):
+        inventory(tmp_path, f'x,y,height,{other}\n0,0,8,A\n9,0,6,B\n')
+    assert inventory(tmp_path, 'x,y,height,street\n0,0,8,A\n9,0,6,B\n').height.tolist() == [8, 6]
+
+
+def test_what_stands_between_the_trees_of_a_map_is_left_out(tmp_path: Path) -> None:
+    tags = [
+        {'natural': 'tree', 'height': '7'},
+        {'amenity': 'fountain', 'height': '3'},
+        {'natural': 'tree', 'height': '9'},
+    ]
+    nodes = [{'lat': 52.5, 'lon': 13.4 + 1e-3 * n, 'tags': each} for n, each in enumerate(tags)]
+    assert inventory(tmp_path, dumps({'elements': nodes}), 'a.json').height.tolist() == [7, 9]
+
+
+def test_several_stems_in_a_cell_are_said(tmp_path: Path) -> None:
+    found = inventory(tmp_path, 'x;y;height;girth [cm]\n0;0;9;30+40\n5;0;8;50\n')
+    np.testing.assert_allclose(found.diameter, 0.5 / np.pi)
+    assert '1 cells of girth [cm] have several stems: one of their section' in found.notes
+
+
+@pytest.mark.parametrize(
+    ('text', 'east', 'north'),
+    [
+        ('azi;dist;bhd;hoehe\ngon;cm;mm;dm\n100;500;300;150\n200;800;310;160\n', [5, 0], [0, -8]),
+        ('species,Azimuth,Distance [m],height\nash,0,4,15\nash,270,6,16\n', [0, -6], [4, 0]),
+        (
+            'azimuth,dist,dbh [in],height [ft]\n90,10,12,50\n180,20,14,60\n',
+            [3.048, 0],
+            [0, -6.096],
+        ),
+    ],
+    ids=['gon', 'degrees', 'feet'],
+)
+def test_trees_stand_by_azimuth_and_distance(
+    tmp_path: Path, text: str, east: list[float], north: list[float]
+) -> None:
+    found = inventory(tmp_path, text)
+    np.testing.assert_allclose(found.x, east, atol=1e-9)
+    np.testing.assert_allclose(found.y, north, atol=1e-9)
+    assert any('placed from the centre of the plot' in note for note in found.notes)
+
+
+def test_azimuths_of_several_plots_have_no_common_centre(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match='about several centres, by subplot'):
+        inventory(tmp_path, 'subplot,azimuth,dist,height\n1,90,4,15\n2,90,4,16\n')
+
+
+def test_names_of_a_species_in_one_cell(tmp_path: Path) -> None:
+    rows = 'x;y;S/P;Common name | Latin name;vyska;torzsatmero\n'
+    rows += '0;0;S;letter ash | Fraxinus excelsior;9 m;30 cm\n5;0;P;x | Picea abies;8 m;25 cm\n'
+    found = inventory(tmp_path, rows.replace('vyska', 'height'))
+    assert [found.wood[each].key for each in found.species] == ['ash', 'spruce']
+    np.testing.assert_allclose(found.diameter, [0.30, 0.25])
+
+
+CLOCKS = {
+    'ZDA': 'GPZDA,{time:06d}.00,05,03,2024,00,00',
+    'RMC': 'GPRMC,{time:06d}.00,A,5231.12,N,01324.30,E,0.0,84.4,050324,3.1,E',
+}
+
+
+def boat(clock: str, per_clock: int) -> str:
+    """Sentences of a clock, each before some of wind; one clock in five seconds is missing."""
+    lines = []
+    for second, time in enumerate([135959, 140000, 140001, 140003]):
+        wind = [f'WIMWD,225.0,T,,M,,N,{4.0 + second:.1f},M'] * per_clock
+        lines += [CLOCKS[clock].format(time=time), 'HEHDT,44.2,T', *wind]
+    return ''.join(f'${each}*{checksum_of(each)}\n' for each in lines)
+
+
+@pytest.mark.parametrize('clock', CLOCKS)
+def test_sentences_have_the_time_of_the_clock_before_them(tmp_path: Path, clock: str) -> None:
+    record = read_wind(written(tmp_path, boat(clock, 1), 'a.nmea'))
+    assert (record.epoch, record.time.tolist()) == (BEGIN, [0, 1, 2, 4])
+    several = read_wind(written(tmp_path, boat(clock, 2), 'b.nmea'), rate=2.0)
+    assert (several.epoch, len(several.time), several.period) == (None, 8, 0.5)
+
+
+def test_long_tables_with_a_date_and_a_time_apart(tmp_path: Path) -> None:
+    rows = 'Date,Time,Sensor name,Value,Unit\n' + ''.join(
+        f'{day},{time},WdSpd,{speed},mph\n{day},{time},WdDir,270,deg\n'
+        for day, time, speed in (('05.03.2024', '23:59:00', 10), ('06.03.2024', '00:00:00', 20))
+    )
+    record = read_wind(written(tmp_path, rows), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], [4.4704, 8.9408])
+    assert record.time.tolist() == [0.0, 60.0]
+
+
+@pytest.mark.parametrize(
+    ('form', 'step', 'unit'),
+    [
+        (' 1  {h:.6f}  3 98 121 279.4 0.005 {speed:.3f} 0.0 99321.4 291.2{zeros}', 36.0, 1.0),
+        ('2024-03-05 14:00:{n:02d}.25: WIND {{direction : -90.0, speed : {speed}, z : 0}}', 1, 1),
+        ('03/05/2024,14:{n:02d}:00,WdSpd,{speed},mph,G\n'
+         '03/05/2024,14:{n:02d}:00,WdDir,270,Deg,G', 60.0, 0.44704),
+    ],
+    ids=['WRF', 'MAVLink', 'Sutron'],
+)  # fmt: skip
+def test_lines_whose_form_is_published(
+    tmp_path: Path, form: str, step: float, unit: float
+) -> None:
+    speeds = [4.0 + n for n in range(6)]
+    lines = [
+        form.format(n=n, h=0.01 * (n + 1), speed=speed, zeros=' 0.0' * 8)
+        for n, speed in enumerate(speeds)
+    ]
+    above = ['Mast 1 3 mast (61.8, 24.2) (98, 121) (61.8, 24.2) 162.3 meters']
+    text = '\n'.join(above * form.startswith(' ') + lines)
+    record = read_wind(written(tmp_path, text, 'a.txt'), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], unit * np.array(speeds), rtol=1e-9)
+    np.testing.assert_allclose(np.diff(record.time), step)
+
+
+def test_a_wind_relative_to_its_mount_is_no_true_wind(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match='no column for the speed and none for the direction'):
+        read_wind(written(tmp_path, 'time,relative wind speed,relative wind direction\n0,5,90\n'))
+
+
+@pytest.mark.parametrize(('covariance', 'is_turned'), [('-1.0', False), ('0.01', True)])
+def test_echoed_messages(tmp_path: Path, covariance: str, is_turned: bool) -> None:
+    zeros = ''.join('- 0.0\n' for _ in range(8))
+    messages = [
+        f'header:\n  stamp:\n    sec: 1709647199\n    nanosec: {nanoseconds}\n  frame_id: imu\n'
+        'orientation:\n  x: 0.0\n  y: 0.0\n  z: 0.0\n  w: 1.0\n'
+        f'orientation_covariance:\n- {covariance}\n{zeros}'
+        f'angular_velocity:\n  x: 0.1\n  y: 0.2\n  z: 0.3\nangular_velocity_covariance:\n{zeros}'
+        f'linear_acceleration:\n  x: 0.5\n  y: 0.0\n  z: 9.8\n'
+        f'linear_acceleration_covariance:\n{zeros}'
+        for nanoseconds in (0, 20_000_000, 40_000_000)
+    ]
+    record = read_motion(written(tmp_path, '---\n'.join([*messages, '']), 'echo.txt'))
+    assert record.acceleration is not None
+    assert record.rate is not None
+    assert record.acceleration.tolist() == [[0.5, 0.0, 9.8]] * 3
+    assert record.rate.tolist() == [[0.1, 0.2, 0.3]] * 3
+    assert (record.orientation is not None) == is_turned
+    np.testing.assert_allclose(np.diff(record.time), 0.02, atol=1e-6)
+    assert record.epoch == BEGIN
+
+
+def test_the_largest_gust_of_a_time(tmp_path: Path) -> None:
+    data = [
+        {
+            'referenceTime': f'2024-03-05T14:{minutes}:00Z',
+            'observations': [
+                {'elementId': name, 'value': value, 'unit': 'm/s'}
+                for name, value in (('wind_speed', 4.0), ('max(wind_speed_of_gust PT10M)', 7.0))
+            ],
+        }
+        for minutes in (10, 20, 30)
+    ]
+    record = read_wind(
+        written(tmp_path, dumps({'data': data}), 'a.json'), direction=270.0, turbulence=False
+    )
+    assert record.gust is not None
+    assert record.gust.tolist() == [7.0] * 3
+
+
+def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
+    rows = [{'rollDegrees': 90.0 * n, 'yawRadians': 0.0, 'time': 0.1 * n} for n in range(4)]
+    path = written(tmp_path, '\n'.join(map(dumps, rows)), 'tilt.jsonl')
+    sway = read_csv_sway(path)
+    assert sway.quantity == 'tilt'
+    np.testing.assert_allclose(sway.motion[1], [np.pi / 2.0, 0.0])
+    with pytest.raises(FormatError, match='no motion among rollDegrees'):
+        read_motion(path)
+
+
+@pytest.mark.parametrize(
+    ('name', 'text', 'match'),
+    [
+        ('a.log', '2024 03 05 14 00 00.1 H:x =  -305 y =   364 z =   -28\n', 'METEK'),
+        ('a.TXT', '"COMMENT",\n"STEM N/E"\n"DATE","11-14-2026"\n', 'a recording of Hioki'),
+        ('a.csv', 'Trajectories\n120\n,,A,,\nFrame,Sub Frame,X,Y,Z\n', 'frames are no times'),
+        ('a.log', 'a/g:\t702\t422\t4139\t-39\t9\t-8\n', 'whose range and rate are set in its'),
+        ('a.mnd', 'FORMAT-1\n2024-03-05 00:00:00 0\nSFAS\n', 'profiles of a sodar in blocks'),
+    ],
+)
+def test_the_beginning_tells_before_the_suffix(
+    tmp_path: Path, name: str, text: str, match: str
+) -> None:
+    for read in (read_wind, read_motion):
+        with pytest.raises(FormatError, match=match):
+            read(written(tmp_path, text, name))
+
+
+@pytest.mark.parametrize(
+    ('name', 'text', 'match'),
+    [
+        ('a.gml', '<?xml version="1.0"?>\n<core:CityModel>\n', 'a city model of CityGML'),
+        ('a.xml', '<?xml version="1.0"?><?xml-stylesheet?>\n<Bestand>\n', 'stand of TreeGrOSS'),
+        ('a.csv', '"code","azimuth","dBase","dTip"\n"L1",0,70,50\n', 'the logs and branches'),
+    ],
+)
+def test_the_beginning_of_a_tree_tells_before_its_suffix(
+    tmp_path: Path, name: str, text: str, match: str
+) -> None:
+    with pytest.raises(FormatError, match=match):
+        open_tree(written(tmp_path, text, name))
+
+
+def test_segments_with_numbers_are_cylinders(tmp_path: Path) -> None:
+    head = 'file , startX, startY, startZ, endX, endY, endZ, radius, SegmentID, ParentSegmentID'
+    rows = 'scan , 0, 0, 7, 0, 0, 9, 0.1, 5, -1,  \nscan , 0, 0, 9, 0, 0.5, 10, 0.05, 6, 5,  \n'
+    tree = open_tree(written(tmp_path, f'{head},  \n{rows}'), warn=False).tree
+    assert tree.height == pytest.approx(3.0)
+
+
+def test_counts_of_a_logger_by_the_words_above_them(tmp_path: Path) -> None:
+    rows = ''.join(f'{0.01 * n:.3f},0,0,2048\n' for n in range(5))
+    text = f';Title, x16-1e, ADXL345\n;Headers, time,Ax,Ay,Az\n{rows}'
+    record = read_motion(written(tmp_path, text))
+    assert record.acceleration is not None
+    np.testing.assert_allclose(record.acceleration[:, 2], 9.80665)
