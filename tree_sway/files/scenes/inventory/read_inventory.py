@@ -115,12 +115,9 @@ def inventory_of(
     """
     given = given or {}
     # Among columns of other things, as of lamps, a place and a height do not make a tree.
-    are_others = table.find_all('other_thing')
+    may_lack = SPECIES if not table.find_all('other_thing') else ''
     missing = missing_columns(table)
-    if any(
-        (are_others or each != SPECIES) and (needs_place or 'place' not in each)
-        for each in missing
-    ):
+    if any(each != may_lack and (needs_place or 'place' not in each) for each in missing):
         what = f'no column for {" and none for ".join(missing)} among '
         what += ', '.join(table.columns[:20])
         cure = 'give a row for each tree, with place, species, and height or dbh'
