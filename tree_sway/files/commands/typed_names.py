@@ -1,10 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Names of trees and winds as they are typed: the other of the two is told before any work."""
+"""Names of trees and winds as they are typed: what is one of another kind is told at once."""
 
 from __future__ import annotations
 
 from pathlib import Path
+import re
 
 from tree_sway.core.species import species_keys
 from tree_sway.errors import FormatError
@@ -28,7 +29,11 @@ def tree_name(text: str) -> str:
 
 
 def wind_name(text: str) -> str:
-    """Return the name of a wind; raise a `FormatError` for a tree or a folder without a record."""
+    """
+    Return the name of a recorded wind.
+
+    A `FormatError` is raised for a tree, a live source or a folder without a record.
+    """
     path = Path(text)
     if path.is_dir():
         names = {name for each in path.iterdir() for name in (each.name, each.suffix)}
@@ -38,4 +43,13 @@ def wind_name(text: str) -> str:
             raise FormatError(what, where=text, cure=cure)
     elif text in (*BUILTIN_TREES, *species_keys()) and not is_file(path):
         raise FormatError(f"'{text}' is a tree, not a wind", cure=f'name it first, {_CURE}')
+    elif re.match(r'[\w-]{2,}:', text) and not is_file(path):
+        raise FormatError(f"'{text}' is no file", cure='give a live source by --sensor')
+    return text
+
+
+def source_name(text: str) -> str:
+    """Return the name of a live source; raise a `FormatError` for a recorded wind."""
+    if text in EXAMPLES or is_file(Path(text)):
+        raise FormatError(f"'{text}' is a recording, no live source", cure='give it by --wind')
     return text
