@@ -11,7 +11,6 @@ from tree_sway.core.species import species_keys
 from tree_sway.errors import FormatError
 from tree_sway.files.paths import is_file
 from tree_sway.files.wind import EXAMPLES
-from tree_sway.growth import BUILTIN_TREES
 
 _CURE = 'as in tree-sway plot goldcrest --wind canopy -o sway.png'
 _OF_A_RECORD = ('metadata.yaml', '.db3', '.mcap', 'record.yaml')
@@ -41,7 +40,7 @@ def wind_name(text: str) -> str:
             what = 'a folder without metadata.yaml, .db3 or .mcap, so no bag of ROS 2'
             cure = 'give a folder that `ros2 bag record` wrote, a file of wind, or canopy'
             raise FormatError(what, where=text, cure=cure)
-    elif text in (*BUILTIN_TREES, *species_keys()) and not is_file(path):
+    elif text in species_keys() and not is_file(path):
         raise FormatError(f"'{text}' is a tree, not a wind", cure=f'name it first, {_CURE}')
     elif re.match(r'[\w-]{2,}:', text) and not is_file(path):
         raise FormatError(f"'{text}' is no file", cure='give a live source by --sensor')
