@@ -24,5 +24,6 @@ if TYPE_CHECKING:
     from tree_sway.commands.refusals import refuse_overwriting as refuse_overwriting
     from tree_sway.commands.refusals import refuse_unused as refuse_unused
     from tree_sway.commands.row_file import RowFile as RowFile
+    from tree_sway.commands.said import say as say
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -7,10 +7,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 import csv
 from pathlib import Path
-import sys
 import time
 from typing import TextIO
 
+from tree_sway.commands.said import say
 from tree_sway.core.wind import shorter_than
 from tree_sway.errors import FormatError
 
@@ -66,7 +66,7 @@ class RowFile:
         since = self._last if self._first is None else self._first
         length = (self._last - since) * self.count / max(self.count - 1, 1)
         if short := shorter_than(length, seconds, self._path.name):
-            print(f'note: {short}', file=sys.stderr)
+            say(short)
 
     def close(self) -> None:
         """Close the file; a `FormatError` if a row could not be written."""

@@ -10,11 +10,10 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-import sys
 import time
 from typing import Any
 
-from tree_sway.commands import Ending, waiting
+from tree_sway.commands import Ending, say, waiting
 from tree_sway.core.wind import shorter_than
 from tree_sway.files.recording import BagWriter
 from tree_sway_ros.process.listener import Listener
@@ -52,9 +51,9 @@ def record_bag(arguments: argparse.Namespace, seconds: float) -> int:
         while not ending.is_asked and recorder.recorded < seconds:
             recorder.spin(_LOOK)
     if short := shorter_than(recorder.covered, seconds, arguments.output):
-        print(f'note: {short}', file=sys.stderr)
+        say(short)
     if recorder.missing:
-        print(f'note: nobody published {", ".join(recorder.missing)}', file=sys.stderr)
+        say(f'nobody published {", ".join(recorder.missing)}')
     written = ', '.join(f'{count} of {name}' for name, count in bag.counts.items())
     print(f'{arguments.output}: {written or "nothing was sent"}')
     return 0

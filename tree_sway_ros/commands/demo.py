@@ -12,11 +12,10 @@ import argparse
 from contextlib import ExitStack
 import math
 from pathlib import Path
-import sys
 import tempfile
 import webbrowser
 
-from tree_sway.commands import Ending
+from tree_sway.commands import Ending, say
 from tree_sway.core.scene import Scene
 from tree_sway.core.wind import shorter_than
 from tree_sway.files.commands import (
@@ -84,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         for name, values in _nodes(arguments, _tree_of(scene, arguments, files)).items():
             node = nodes.add(name, values)
             if name == 'player' and (short := shorter_than(node.length, seconds)):
-                print(f'note: {short}', file=sys.stderr)
+                say(short)
         if not arguments.no_page:
             _serve_page(nodes, arguments)
         ending.limit = Ending.LONGEST

@@ -29,6 +29,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ('info empty.csv', 'info: empty.csv: an empty file'),
         ('simulate goldcrest --wind benjamina', "'benjamina' is a tree, not a wind; name it"),
         ('simulate goldcrest --wind oak', "'oak' is a tree, not a wind"),
+        ('show --wind udp://:10110', "'udp://:10110' is no file; give a live source by --sensor"),
+        ('show --wind open-meteo:52,13', 'give a live source by --sensor'),
+        ('show --sensor canopy', "'canopy' is a recording, no live source; give it by --wind"),
+        ('show --sensor empty.csv', "'empty.csv' is a recording"),
         (
             'simulate goldcrest --wind mast',
             'mast: a folder without metadata.yaml, .db3 or .mcap, so no bag of ROS 2; give a',

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from tree_sway.files.commands.arguments import write_tree_file as write_tree_file
     from tree_sway.files.commands.moments import at_moments as at_moments
     from tree_sway.files.commands.moments import frame_times as frame_times
+    from tree_sway.files.commands.typed_names import source_name as source_name
     from tree_sway.files.commands.wind_arguments import (
         add_distance_arguments as add_distance_arguments,
     )

@@ -8,10 +8,9 @@ import argparse
 from collections.abc import Callable, Iterable
 import dataclasses
 import math
-import sys
 from typing import Any, TypeVar
 
-from tree_sway.commands import refuse_overwriting, waiting
+from tree_sway.commands import refuse_overwriting, say, waiting
 from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.scene import Scene
 from tree_sway.core.settings import model_of, Settings
@@ -38,13 +37,12 @@ def add_tree_arguments(
 ) -> None:
     """Add TREE, or a forest, and its wood; TREE is required unless there is a default."""
     kind = _TREE + ', forest or inventory' * forests
-    if default is None:
-        parser.add_argument('tree', type=tree_name, metavar='TREE', help=kind)
-    else:
-        text = f'{kind} (%(default)s)'
-        parser.add_argument(
-            'tree', type=tree_name, metavar='TREE', nargs='?', default=default, help=text
-        )
+    number = None
+    if default is not None:
+        kind, number = f'{kind} (%(default)s)', '?'
+    parser.add_argument(
+        'tree', type=tree_name, metavar='TREE', nargs=number, default=default, help=kind
+    )
     add = parser.add_argument_group('tree').add_argument
     add('--seed', type=int, default=0, help='random seed of a built-in tree (%(default)s)')
     add(
@@ -111,7 +109,7 @@ def _opened(opener: Callable[..., T], arguments: argparse.Namespace, **more: boo
 def say_warnings(warnings: Iterable[str]) -> None:
     """Print what was changed in a tree, and what is odd about it, on lines of their own."""
     for warning in warnings:
-        print(f'warning: {warning}', file=sys.stderr)
+        say(warning, 'warning')
 
 
 def _wood_of(arguments: argparse.Namespace) -> Callable[[Species], Species]:

@@ -7,9 +7,8 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from pathlib import Path
-import sys
 
-from tree_sway.commands import counting, refuse_unused, waiting
+from tree_sway.commands import counting, refuse_unused, say, waiting
 from tree_sway.core.run import SwaySimulator
 from tree_sway.core.scene import make_simulator, Scene, solved
 from tree_sway.core.settings import Settings
@@ -95,7 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
     paths = numbered_paths(output, count, may_overwrite=suffix != '.obj' or arguments.force)
     scene = opened_scene(arguments)
     for note in scene.notes:
-        print(f'note: {note}', file=sys.stderr)
+        say(note)
     if suffix == '.obj':
         _write_moments(scene, arguments, moments, paths)
     elif suffix == '.html':

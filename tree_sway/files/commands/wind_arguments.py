@@ -7,10 +7,9 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-import sys
 from typing import Any
 
-from tree_sway.commands import refuse_unused
+from tree_sway.commands import refuse_unused, say
 from tree_sway.core.checks import within
 from tree_sway.core.settings import GUSTS
 from tree_sway.core.wind import shorter_than
@@ -121,7 +120,7 @@ def opened_record(arguments: argparse.Namespace) -> WindRecord:
     record = read_wind(arguments.wind, **options)
     refused = f'{record.refused} rows refused; {record.first_refused}' if record.refused else ''
     for note in filter(None, (*record.notes, refused)):
-        print(f'note: {note}', file=sys.stderr)
+        say(note)
     return record
 
 
@@ -130,7 +129,7 @@ def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
     if arguments.wind is not None:
         record = opened_record(arguments)
         if short := shorter_than(record.duration, getattr(arguments, 'seconds', None)):
-            print(f'note: {short}', file=sys.stderr)
+            say(short)
         return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
     return SimulatedWind(simulated_speed(arguments))
 

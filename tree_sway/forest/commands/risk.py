@@ -14,10 +14,11 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from tree_sway.commands import bar, refuse_overwriting, RowFile
+from tree_sway.commands import bar, RowFile, say
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
-from tree_sway.files import path_of, read_head, refuse_unwritable
+from tree_sway.files import path_of, read_head
+from tree_sway.files.commands import output_path
 from tree_sway.files.scenes import expected, inventory_of, inventory_table
 from tree_sway.forest.climate import Climate, climate_of
 from tree_sway.forest.commands.study import add_cluster_arguments, refuse_wrong_cluster
@@ -76,9 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
     output = path_of(arguments.output)
     if output.suffix.lower() != '.csv':
         raise ParameterError(f"'{output}' is no table", where='--output', cure='end it with .csv')
-    if not arguments.force:
-        refuse_overwriting(output, '--output')
-    refuse_unwritable(output)
+    output_path(arguments)
     path = path_of(arguments.inventory)
     with expected(path, 'inventory'):
         inventory = inventory_of(inventory_table(path, read_head(path)), needs_place=False)
@@ -86,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.spacing is not None and places <= {'open', 'street'}:
         refuse_spacing_in_the_open()
     for note in inventory.notes:
-        print(f'note: {note}', file=sys.stderr)
+        say(note)
     climate = climate_of(arguments.climate)
     work = risk_work(
         inventory, arguments.seed, exposure=arguments.exposure, spacing=arguments.spacing,
@@ -165,7 +164,7 @@ def _written(output: Path, results: Iterator[Row], n_trees: int) -> list[Row]:
     rows = list[Row]()
     file = RowFile(output)
     try:
-        for _, row in zip(bar(range(n_trees), 'trees'), results, strict=True):
+        for _, row in zip(bar(range(n_trees), 'computing trees'), results, strict=True):
             file.write(list(row), list(row.values()))
             rows.append(row)
             if file.failure:

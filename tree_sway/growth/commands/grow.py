@@ -5,11 +5,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 
 import numpy as np
 
-from tree_sway.commands import waiting
+from tree_sway.commands import say, waiting
 from tree_sway.core.checks import within
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import TreeReductions
@@ -59,18 +58,18 @@ def run(arguments: argparse.Namespace) -> int:
         diameter = stem_of_age(species.key, arguments.age)
         curve = stem_growth()[species.key]
         whose = f'{curve.measured} along streets ({curve.region}, USA)'
-        print(f'note: a stem of {diameter:.2f} m, as {whose}', file=sys.stderr)
+        say(f'a stem of {diameter:.2f} m, as {whose}')
     rng = np.random.default_rng(arguments.seed)
     with waiting(f'growing {species.key}'):
         tree = grow(species.key, arguments.height, diameter, rng=rng)
     species = rooted(tree, species)
     grown = TreeFile(tree, species, tree.name).checked()
     for oddity in grown.warnings:
-        print(f'warning: {oddity}', file=sys.stderr)
+        say(oddity, 'warning')
     try:
         TreeReductions(tree, species, Settings(in_leaf=True)).natural_frequencies(1)
     except TreeError as error:
-        print(f'warning: it buckles in leaf: {error}', file=sys.stderr)
+        say(f'it buckles in leaf: {error}', 'warning')
     write_tree_file(output, tree, species)
     return 0
 

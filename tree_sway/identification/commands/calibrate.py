@@ -8,10 +8,9 @@ import argparse
 import math
 from pathlib import Path
 import shlex
-import sys
 import time
 
-from tree_sway.commands import waiting
+from tree_sway.commands import say, waiting
 from tree_sway.core.checks import within
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import is_in_leaf
@@ -113,8 +112,7 @@ def run(arguments: argparse.Namespace) -> int:
     say_warnings([*sorted(new), *([oddity] if oddity else [])])
     if arguments.branch is None and fitted.branch != tree_file.tree.branch_names[0]:
         stem = tree_file.tree.branch_names[0]
-        print(f'note: this sway is of a limb; one measured on the stem: --branch {stem}',
-              file=sys.stderr)  # fmt: skip
+        say(f'this sway is of a limb; one measured on the stem: --branch {stem}')
     for line in _changes(tree_file.species, fitted, error, damping, in_leaf=in_leaf):
         print(line)
     write_tree_file(output, tree_file.tree, fitted.species)

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from tree_sway.live.commands.live_motion_arguments import (
         add_live_motion_arguments as add_live_motion_arguments,
     )
+    from tree_sway.live.commands.live_motion_arguments import say_motion as say_motion
     from tree_sway.live.commands.live_motion_arguments import sensing as sensing
     from tree_sway.live.commands.sensor_arguments import add_sensor_argument as add_sensor_argument
     from tree_sway.live.commands.sensor_arguments import listening as listening

@@ -10,13 +10,16 @@ from contextlib import contextmanager, ExitStack
 from functools import partial
 from typing import TYPE_CHECKING
 
+from tree_sway.commands import say
 from tree_sway.errors import ParameterError
-from tree_sway.live.commands.sensor_arguments import say
 from tree_sway.live.commands.sensor_places import add_place_argument, sensors_and_places
 
 if TYPE_CHECKING:
     from tree_sway.live import MotionFeed
     from tree_sway.live.motion.motion_reading import MotionReading
+
+say_motion = partial(say, kind='motion')
+"""Print a line of news of a motion sensor or a camera."""
 
 
 def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,7 +57,6 @@ def sensing(
     from tree_sway.live import LiveMotion, MotionFeed, open_motion
     from tree_sway.live.motion.motion_feed import PlacedSensor
 
-    say_motion = partial(say, kind='motion')
     places = sensors_and_places(arguments)
     sources = [open_motion(url) for url, _ in places]
     addresses = [str(each.transport) for each in sources]

@@ -7,14 +7,16 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-import sys
+from functools import partial
 import threading
 import time
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tree_sway.commands import say
 from tree_sway.errors import ParameterError, TransportError
+from tree_sway.files.commands import source_name
 from tree_sway.files.wind import WindRecord
 
 if TYPE_CHECKING:
@@ -35,12 +37,12 @@ _UNREACHED = 12.0
 
 def add_sensor_argument(parser: argparse.ArgumentParser, *others: str) -> None:
     """Add ``--sensor``, and other names of it."""
-    parser.add_argument('--sensor', *others, metavar='SOURCE', help=HELP)
+    names = ('--sensor', *others)
+    parser.add_argument(*names, type=source_name, metavar='SOURCE', help=HELP)
 
 
-def say(text: str, kind: str = 'sensor') -> None:
-    """Print a line of news of a source, in one write: threads of sources print as well."""
-    print(f'{kind}: {text}\n', end='', file=sys.stderr, flush=True)
+say_sensor = partial(say, kind='sensor')
+"""Print a line of news of a source."""
 
 
 @contextmanager
@@ -57,7 +59,7 @@ def listening(
 
     if getattr(arguments, 'wind', None) is not None:
         raise ParameterError('both --sensor and --wind', cure='give one of the two')
-    wind = LiveWind(open_source(arguments.sensor), say, heard=heard)
+    wind = LiveWind(open_source(arguments.sensor), say_sensor, heard=heard)
     wind.start()
     try:
         yield wind
@@ -74,7 +76,7 @@ def _wait_for_wind(wind: LiveWind) -> None:
     """
     pause = threading.Event()
     began = time.monotonic()
-    say(f'waiting for {wind.link.transport}; Ctrl-C ends it')
+    say_sensor(f'waiting for {wind.link.transport}; Ctrl-C ends it')
     while wind.newest is None:
         limit = _PATIENCE if wind.link.connections else _UNREACHED
         if time.monotonic() > began + limit:
@@ -98,7 +100,7 @@ def live_record(arguments: argparse.Namespace, seconds: float) -> WindRecord:
                 pause.wait(_LOOK)
                 samples += wind.drain()
         except KeyboardInterrupt:
-            say('ended: what came so far is used')
+            say_sensor('ended: what came so far is used')
         name, refused = wind.name, wind.refused_text
     if len(samples) < 2:
         raise TransportError(

@@ -11,11 +11,10 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-import sys
 import time
 from typing import TYPE_CHECKING
 
-from tree_sway.commands import RowFile
+from tree_sway.commands import RowFile, say
 from tree_sway.errors import inside, ParameterError, TransportError
 from tree_sway.files.commands import say_warnings
 from tree_sway.files.export import write_tree
@@ -100,7 +99,7 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
     write_tree_record(sheet._replace(motion=heard, wind_source=wind.name))
     for sensor, problem in zip(placed, problems, strict=True):
         if problem:
-            print(f'note: {sensor.source} at {sensor.at}: {problem}', file=sys.stderr)
+            say(f'{sensor.source} at {sensor.at}: {problem}')
     if not wind_table.count:
         raise TransportError(wind_problem or 'no wind came', where='--sensor')
     if not came:

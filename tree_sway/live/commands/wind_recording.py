@@ -14,9 +14,9 @@ import math
 from pathlib import Path
 import time
 
-from tree_sway.commands import refuse_overwriting, RowFile
+from tree_sway.commands import RowFile
 from tree_sway.errors import ParameterError, TransportError
-from tree_sway.files import refuse_unwritable
+from tree_sway.files.commands import output_path
 from tree_sway.files.wind import WindReading
 from tree_sway.live import LiveWind
 from tree_sway.live.commands.record_clock import iso_date, RecordClock, wait
@@ -45,9 +45,7 @@ def record_wind(arguments: argparse.Namespace, seconds: float) -> int:
     path = Path(arguments.output)
     if path.suffix.lower() != '.csv':
         raise ParameterError(f"'{path}' is no table", where='--output', cure='name it wind.csv')
-    if not arguments.force:
-        refuse_overwriting(path, '--output')
-    refuse_unwritable(path)
+    output_path(arguments)
     end = time.monotonic() + seconds
     table = WindTable(path)
     with listening(arguments, heard=table.take) as wind:

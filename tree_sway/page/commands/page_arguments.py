@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-import sys
 from urllib.parse import urlencode, urlsplit
 
+from tree_sway.commands import say
 from tree_sway.core.checks import within
 from tree_sway.doorkeeper import is_loopback
 from tree_sway.errors import ParameterError
@@ -77,10 +77,10 @@ def print_address(server: PageServer, begin: str) -> None:
         print(f'{begin} {server.url}', flush=True)
         return
     if server.url.startswith('http:') and not is_loopback(server.settings.address):
-        print(
-            'warning: without a certificate everybody on the way can read these links and what '
-            'they show (doc/share_a_page.md)',
-            file=sys.stderr,
+        say(
+            'without a certificate everybody on the way can read these links and what they show '
+            '(doc/share_a_page.md)',
+            'warning',
         )
     token = read_token(server.settings.token_file)
     print(f'{begin} {server.url}?{urlencode({"token": token})}')

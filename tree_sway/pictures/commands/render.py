@@ -7,10 +7,9 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from io import BytesIO
-import sys
 import time
 
-from tree_sway.commands import waiting
+from tree_sway.commands import say, waiting
 from tree_sway.core.checks import within
 from tree_sway.files.commands import (
     add_output_arguments,
@@ -77,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         images = (Image.open(BytesIO(each)).convert('RGB') for each in told)
         write_pictures(images, target, rate)
     else:
-        print(f'note: drawn by matplotlib, as {why_plain}', file=sys.stderr)
+        say(f'drawn by matplotlib, as {why_plain}')
         shown = [(simulator.place().copy(), simulator.wind.copy()) for _ in frames]
         leaves = scene.leaves(chosen_leaves(arguments), _LEAVES)
         with waiting('painting'):
@@ -101,10 +100,9 @@ def _with_forecast(pictures: Iterator[bytes], count: int) -> Iterator[bytes]:
         if len(times) == _TRIED:
             left = (times[-1] - times[0]) / (_TRIED - 1) * (count - _TRIED)
             if left > _LONG:
-                print(
-                    f'note: {count} pictures take about {left:.0f} s more; '
-                    'a smaller --seconds, --rate or --pixels takes less',
-                    file=sys.stderr,
+                say(
+                    f'{count} pictures take about {left:.0f} s more; '
+                    'a smaller --seconds, --rate or --pixels takes less'
                 )
         yield each
 

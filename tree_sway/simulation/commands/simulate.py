@@ -7,11 +7,10 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 from pathlib import Path
-import sys
 
 import numpy as np
 
-from tree_sway.commands import counting, waiting
+from tree_sway.commands import counting, say, waiting
 from tree_sway.core.wind import simulate_turbulence
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.commands import (
@@ -116,7 +115,7 @@ def run(arguments: argparse.Namespace) -> int:
     with waiting(f'writing {output}'):
         write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:
-        print(f'note: {note}', file=sys.stderr)
+        say(note)
     if learned_file is not None:
         write_learned(learned_file, record.learned)
     print(f'{output}: {record}')

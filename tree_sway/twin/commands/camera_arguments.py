@@ -7,15 +7,14 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-import sys
 from typing import NamedTuple, TYPE_CHECKING
 
-from tree_sway.commands import waiting
+from tree_sway.commands import say, waiting
 from tree_sway.core.checks import within
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.live import CameraView, Film, is_camera, LiveFilm, PAGE, PageFilm
-from tree_sway.live.commands import sensors_and_places
+from tree_sway.live.commands import say_motion, sensors_and_places
 from tree_sway.twin.camera import FilmedMotion
 
 if TYPE_CHECKING:
@@ -54,10 +53,10 @@ def placed_camera(address: str, at: str, tree: Tree) -> PlacedCamera:
 
     """
 
-    def say(text: str) -> None:
-        print(f'note: {address}: {text}', file=sys.stderr)
+    def say_of_it(text: str) -> None:
+        say(f'{address}: {text}')
 
-    view = CameraView(tree, at, say, f'simulate --motion {address}')
+    view = CameraView(tree, at, say_of_it, f'simulate --motion {address}')
     film = Film(address, late=view.told.late)
     return PlacedCamera(film, view.place(film.first), view)
 
@@ -73,23 +72,18 @@ def filming(
     """
     told = _told_camera(arguments)
     if told is None or told[0] == PAGE:
-        yield PageFilm(tree(), told[1], _say) if told else None
+        yield PageFilm(tree(), told[1], say_motion) if told else None
         return
     placed = placed_camera(*told, tree())
     if not placed.film.is_live:
         cure = 'give camera:0 or camera:rtsp://host/path; tree-sway simulate follows films'
         raise ParameterError(f'{placed.film.name} is of the past', where='--motion', cure=cure)
-    live = LiveFilm(placed.film, placed.view, _say)
+    live = LiveFilm(placed.film, placed.view, say_motion)
     live.start()
     try:
         yield live
     finally:
         live.stop()
-
-
-def _say(text: str) -> None:
-    """Print a line of news of the camera."""
-    print(f'motion: {text}\n', end='', file=sys.stderr, flush=True)
 
 
 def filmed_motion(arguments: argparse.Namespace, tree: Tree) -> FilmedMotion | None:

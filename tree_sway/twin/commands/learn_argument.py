@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import argparse
-import sys
 
+from tree_sway.commands import say
 from tree_sway.errors import inside, ParameterError
 from tree_sway.files.commands import what_was_written
 from tree_sway.files.trees import LearnedFile, refuse_no_learned_file
@@ -37,10 +37,10 @@ def check_learn_argument(arguments: argparse.Namespace) -> None:
 def write_learned(file: LearnedFile, learned: LearnedTree | None) -> None:
     """Write a tree with what was learned, and say it; without anything, only say so."""
     if learned is None or learned is file.opened.learned:
-        print(
-            f'warning: {file.path} is not written: the sensors told nothing; 40 s of sway are '
-            'needed, and a stretch of 40 periods of the tree',
-            file=sys.stderr,
+        say(
+            f'{file.path} is not written: the sensors told nothing; 40 s of sway are needed, and '
+            'a stretch of 40 periods of the tree',
+            'warning',
         )
         return
     file.write(learned)

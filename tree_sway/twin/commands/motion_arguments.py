@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-import sys
 
+from tree_sway.commands import say
 from tree_sway.core.checks import within
 from tree_sway.core.tree import Tree
 from tree_sway.errors import inside
@@ -57,7 +57,7 @@ def placed_motion(
             is_strain = place_on(tree, at).is_strain
         record = read_strain(Path(path)).motion() if is_strain else read_motion(path)
         for note in (*record.notes, *_clock_note(record, epoch, starts)):
-            print(f'note: {note}', file=sys.stderr)
+            say(note)
         found.append(
             PlacedMotion(
                 f'sensor {number} at {at}',

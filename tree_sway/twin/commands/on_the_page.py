@@ -8,10 +8,10 @@ import argparse
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import replace
-import sys
 import time
 from weakref import WeakKeyDictionary
 
+from tree_sway.commands import say
 from tree_sway.core.scene import Scene, Simulator
 from tree_sway.core.settings import model_of, Settings
 from tree_sway.core.tree import Tree
@@ -107,7 +107,7 @@ class SensorsOnThePage(PageAddition):
             try:
                 write(simulator)
             except FormatError as error:
-                print(f'warning: {error}', file=sys.stderr)
+                say(error, 'warning')
 
     def _keep(self, twin: ObservedTree) -> None:
         if twin in self._learned:
