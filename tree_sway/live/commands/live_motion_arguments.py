@@ -67,7 +67,7 @@ def sensing(
                 where='--motion',
                 cure='a sensor has one place: give each its own port, host or topic',
             )
-    tells = heard or [None] * len(sources)
+    tells: Sequence[Callable[[MotionReading], None] | None] = heard or [None] * len(sources)
     placed = [
         PlacedSensor(LiveMotion(source, say_motion, heard=tell), at)
         for source, tell, (_, at) in zip(sources, tells, places, strict=True)

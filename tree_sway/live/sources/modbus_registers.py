@@ -55,7 +55,7 @@ def open_source(address: SourceAddress) -> Source:
 
     def read(message: Message) -> Sequence[Reading]:
         if len(message.data) != 2 * count:
-            return [Refusal(_KIND, f'{len(message.data)} bytes of {count} registers')]
+            return [Refusal(_KIND, f'{len(message.data) // 2} registers of {count}')]
         words = struct.unpack(f'>{count}h', message.data)
         if words[speed - first] in _NO_VALUE:
             return [Refusal(_KIND, f'no speed: the register is {words[speed - first]}')]
