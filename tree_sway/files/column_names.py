@@ -70,6 +70,8 @@ _SHORTEST_CUT = 8
 """Letters that the beginning of a known name has at least."""
 _LONGEST_NAME = 200
 """Characters of the longest name whose words are compared with units."""
+_ENDLESS = 2000
+"""Characters above which a header has no end and is no name."""
 _IN = re.compile(r'^(in|en)(?=\w)')
 """Word between a name and its unit."""
 
@@ -163,6 +165,8 @@ def rank_of(column: str, quantity: str) -> int | None:
     Of a name within groups, as ``metric.windSpeed.value``, the last part counts alone; a year in
     it, as in ``DBH_2019``, does not count.
     """
+    if len(column) > _ENDLESS:
+        return None
     kind = COLUMNS[quantity]['unit']
     column = _YEAR.sub('', column) or column
     name, _ = name_and_unit(column, kind)
