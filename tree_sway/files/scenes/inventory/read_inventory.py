@@ -115,8 +115,9 @@ def inventory_of(
     """
     given = given or {}
     # Among columns of other things, as of lamps, a place and a height do not make a tree.
-    are_others = table.find_all('other_thing')
-    missing = [each for each in missing_columns(table) if are_others or each != SPECIES]
+    missing = missing_columns(table)
+    if SPECIES in missing and not table.find_all('other_thing'):
+        missing.remove(SPECIES)
     if not needs_place:
         missing = [each for each in missing if 'place' not in each]
     if missing:

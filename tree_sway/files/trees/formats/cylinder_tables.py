@@ -35,8 +35,9 @@ from tree_sway.files.trees.tree_options import FITTED
 
 
 def _names(line: str) -> dict[str, str]:
-    """Names of columns by their letters and digits alone; ``SegmentID`` is an ``id``."""
-    return {re.sub(r'[\W_]|segment', '', cell.lower()): cell for cell in re.split('[,;\t]', line)}
+    """Names of columns by letters and digits; ``SegmentID`` is the ``id`` without another."""
+    cells = sorted(re.split('[,;\t]', line), key=lambda cell: 'egment' not in cell)
+    return {re.sub(r'[\W_]|segment', '', cell.lower()): cell for cell in cells}
 
 
 def _is_named(head: str) -> bool:
@@ -50,7 +51,7 @@ def _is_named(head: str) -> bool:
 def _read(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of a table."""
     table = parse_table(read_lines(path), str(path))
-    names = {own: each for column in table.columns for own, each in _names(column).items()}
+    names = _names('\t'.join(table.columns))
 
     def columns(word: str) -> Floats:
         return table.strict([names.get(f'{word}{axis}', word) for axis in 'xyz'])
