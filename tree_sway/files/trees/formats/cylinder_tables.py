@@ -69,7 +69,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     if not {'id', 'cylid'} & names.keys():
         rows = [[*table.split(text), str(row)] for row, text in enumerate(table.texts, start=1)]
         table = table_of_cells([*table.columns, 'id'], rows, str(path), table.numbers)
-    number = names.get('id', names.get('cylid', 'id'))
+    number = names.get('cylid', names.get('id', 'id'))
     roots = [0, -1] if table.strict([number]).min(initial=1.0) else [-1, 0]
     missing = 'parent_ID' if 'cylid' in names else 'parentID'
     above = names.get('parent', names.get('parentid', missing))
