@@ -365,7 +365,7 @@ def test_degrees_in_x_and_y_are_said(tmp_path: Path) -> None:
             'no column for the size (height, dbh or girth) among codi',
         ),
         (
-            'CN,PLOT,SUBP,TREE,AZIMUTH,DIST,SPCD,DIA,HT\n1,10,1,1,45,12.3,131,8.1,55\n',
+            'CN,PLOT,SUBP,TREE,AZIMUTH,SPCD,DIA,HT\n1,10,1,1,45,131,8.1,55\n',
             'no column for the place (x and y, or latitude and longitude)',
         ),
         (

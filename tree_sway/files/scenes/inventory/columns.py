@@ -123,7 +123,7 @@ class InventoryColumns:
                     unread.append(row)
                 continue
             values[row], units[row] = found
-            n_several += stems and cell_number(text) is None
+            n_several += found != cell_number(text)
             is_range = re.search(r'\S\s*[-/]', text) is not None
             n_ranges += is_range and found == cell_number(text)
         self._drop_nines(values, index)

@@ -53,7 +53,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         end = columns('end')
     else:
         end = start + column('length')[:, None] * columns('axis')
-    number = names.get('id', names.get('cylid', ''))
+    number = names.get('cylid', names.get('id', ''))
     roots = [-1, 0] if number and not table.strict([number]).min(initial=1.0) else [0, -1]
     missing = 'parent_ID' if 'cylid' in names else 'parentID'
     above = names.get('parent', names.get('parentid', missing))
