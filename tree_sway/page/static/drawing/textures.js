@@ -259,7 +259,7 @@ class Brush {
       const up = random();
       const reach = half * (1 - up) ** 0.6;
       const light = 0.75 + 0.25 * random();
-      context.fillStyle = css(i % 9 ? [0.9, 1, 0.69] : [0.85, 0.74, 0.5], light);
+      context.fillStyle = css(i % 9 ? [0.64, 0.79, 0.62] : [0.62, 0.5, 0.38], light);
       context.beginPath();
       context.arc(middle + reach * (2 * random() - 1), 0.46 - 0.9 * up, 0.016, 0, 7);
       context.fill();
