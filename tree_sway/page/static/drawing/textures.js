@@ -55,7 +55,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const pixels = size ?? (along > 1 || hasLeaflets ? 512 : 128);
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
-  if (along === 1) brush.leaf(0.99, 0.95);
+  if (along === 1) brush.leaf(0.99, 0.8);
   else if (look.form === "tufts" && along < 5) brush.tuft(0.58, 0, 0, 0.42, 26);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
