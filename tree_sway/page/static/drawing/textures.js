@@ -57,7 +57,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const pixels = size ?? (along > 1 || hasLeaflets ? 512 : 128);
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
-  if (along === 1) brush.leaf(0.99, 0.95);
+  if (along === 1) brush.leaf(0.99, 0.8);
   else if (look.form === "tufts") brush.tufts(along < 5 ? places.tuft : places.tufts);
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
@@ -258,8 +258,11 @@ class Brush {
     for (let i = 0; i < 240; i++) {
       const up = random();
       const reach = half * (1 - up) ** 0.6;
-      context.fillStyle = css(i % 9 ? [0.9, 1, 0.69] : [0.85, 0.74, 0.5], 0.75 + 0.25 * random());
-      context.fillRect(middle + reach * (2 * random() - 1), 0.45 - 0.9 * up, 0.03, 0.03);
+      const light = 0.75 + 0.25 * random();
+      context.fillStyle = css(i % 9 ? [0.64, 0.79, 0.62] : [0.62, 0.5, 0.38], light);
+      context.beginPath();
+      context.arc(middle + reach * (2 * random() - 1), 0.46 - 0.9 * up, 0.016, 0, 7);
+      context.fill();
     }
   }
 
