@@ -7,7 +7,7 @@ import { test } from "node:test";
 import { Camera } from "../../tree_sway/page/static/drawing/camera.js";
 import { Detail, levelsOf } from "../../tree_sway/page/static/drawing/detail.js";
 import { deadWood, leafMesh } from "../../tree_sway/page/static/drawing/foliage.js";
-import { distance } from "../../tree_sway/page/static/quaternions.js";
+import { distance, turned } from "../../tree_sway/page/static/quaternions.js";
 import { barkMesh, shapeOf } from "../../tree_sway/page/static/drawing/mesh.js";
 import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
 import { cornersAbout } from "../../tree_sway/page/static/drawing/impostors.js";
@@ -255,6 +255,26 @@ test("every small card grows from a twig that is drawn", () => {
   }
 });
 
+test("twigs of a plant in a pot hang if its shoots droop", () => {
+  const segmentAt = new Map(Array.from(placer.slots, (slot, segment) => [slot, segment]));
+  const { leaf_segment: clusters, segment_radius: radius } = kind.arrays;
+  const leafy = new Set(clusters);
+  // Thick wood has no shoots but its clusters.
+  const arrays = { ...kind.arrays, segment_radius: radius.map((each, i) => (leafy.has(i >> 1) ? each : 9)) };
+  const cards = 24 * clusters.length;
+  const [hanging, upright] = [0.5, -0.5].map((droop) => {
+    const look = { ...average, leaf_size: 0.2, is_potted: true, droop };
+    const { mesh } = leafMesh(shapeOf({ ...kind, arrays, look }), placer.order.slice(0, 1), cards, cards, false);
+    const falls = cardsOf(mesh).filter(({ isWood }) => isWood).map(({ slot, ends: [from, to] }) => {
+      const along = turned(shape.rest, to.map((each, c) => each - from[c]), 8 * segmentAt.get(slot) + 4);
+      return -along[2] / distance(from, to);
+    });
+    return falls.reduce((sum, each) => sum + each, 0) / falls.length;
+  });
+  assert.ok(hanging > 0.4, `${hanging}`);
+  assert.ok(upright < 0.1, `${upright}`);
+});
+
 test("a leaf with leaflets is a picture of its own, as large as it is", () => {
   const walnut = { ...average, form: "compound", leaf_size: 0.1 };
   assert.equal(wholeLeaf(average), average.leaf_size);
@@ -358,6 +378,31 @@ test("a small tree has fewer rings of bark, none thinner than half a pixel", () 
   for (let v = 0; v < far.values.length / 8; v++) {
     assert.ok(Math.hypot(far.values[8 * v + 2], far.values[8 * v + 3]) > 0.5 / 12 / 2);
   }
+});
+
+test("wood bends between its joints where these turn, and nowhere else", () => {
+  const { segment_length: length, segment_radius: radius, branch_first: first } = kind.arrays;
+  const bends = (poses) => {
+    const { values } = barkMesh({ ...shape, rest: poses }, placer.order.slice(0, 1), 8000);
+    const middles = new Map();
+    for (let v = 0; v < values.length; v += 8) {
+      const [slot, along, y, z] = values.slice(v, v + 4);
+      const key = `${slot} ${along}`;
+      middles.set(key, [...(middles.get(key) ?? []), [y, z]]);
+    }
+    // The second first corner of a ring is left out.
+    return [...middles.values()].map((ring) => Math.hypot(...[0, 1].map((c) => ring.slice(1).reduce((sum, each) => sum + each[c] / (ring.length - 1), 0))));
+  };
+  const straight = shape.rest.slice();
+  const bent = shape.rest.slice();
+  const [branch] = placer.order;
+  for (let s = first[branch]; s < first[branch + 1]; s++) {
+    straight.set([0, 0, 0, 1], 8 * s + 4);
+    bent.set([0, Math.sin(0.3 * s), 0, Math.cos(0.3 * s)], 8 * s + 4);
+  }
+  const [thick, long] = [Math.max(...radius), Math.min(...length.slice(first[branch], first[branch + 1]))];
+  assert.ok(Math.max(...bends(straight)) < thick);
+  assert.ok(Math.max(...bends(bent)) > Math.max(...bends(straight)) + 0.03 * long);
 });
 
 test("the arrow of the wind is small beside the tree, whatever the wind", () => {

@@ -209,13 +209,11 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   const { branch_first: first, segment_length: length, segment_radius: radius, leaf_segment: carrier } = arrays;
   const leafy = new Set(carrier);
   const thickest = Math.max(...Array.from(leafy, (segment) => radius[2 * segment]));
-  const frequency = arrays.leaf_frequency[0];
   /** @type {Shoot[]} */
   const shoots = [];
-  const droop = look.droop ?? 0;
   const isWeeping = weeps(look);
   const size = isWeeping ? mean : Math.min(BARE_SIZE * mean, LARGEST_BARE);
-  const leafiest = thickest * (THIN + CURTAIN * Math.max(0, droop));
+  const leafiest = thickest * (THIN + CURTAIN * Math.max(0, look.is_potted ? 0 : look.droop ?? 0));
   const share = (size / mean) ** 2;
   /** @param {number} segment @param {number} along [m] */
   const add = (segment, along) => {
@@ -224,7 +222,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     // Some shoots of a weeping bough clothe its back.
     const frame = isWeeping && shoots.length % 2 ? DOWN : own;
     const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] - (frame === DOWN && c > 1 ? 0.5 * size : 0));
-    shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency, share });
+    shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency: arrays.leaf_frequency[0], share });
   };
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
