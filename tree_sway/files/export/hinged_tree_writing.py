@@ -160,5 +160,5 @@ def _drag_coefficients(tree: Tree, drag_area: Floats, radius: Floats) -> Floats:
     return np.asarray(ours / np.mean(projected, axis=1))
 
 
-def _text(values: Floats) -> str:
+def _text(values: Floats | float) -> str:
     return ' '.join(f'{value:.9g}' for value in np.atleast_1d(values))

@@ -197,7 +197,7 @@ def _unit(vectors: Floats) -> Floats:
 def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
     """Mesh of cards from their corners and the normals there, (m, 4, 3)."""
     n = len(points)
-    triangles = 4 * np.arange(n)[:, None, None] + [[0, 1, 2], [0, 2, 3]]
+    triangles = 4 * np.arange(n)[:, None, None] + np.array([[0, 1, 2], [0, 2, 3]])
     of_picture = _CORNERS + np.array([0.0, 0.5])
     return TreeMesh(
         points.reshape(-1, 3),

@@ -77,12 +77,12 @@ def read_stand_table(
     yaw = np.where(np.isnan(inventory.yaw), random_yaw, inventory.yaw)
     trees = []
     rows = zip(keys, inventory.species, *(each.tolist() for each in classes), strict=True)
-    for row, (key, name, *size) in enumerate(rows):
-        own_class = key, *size
+    for row, (key, name, height, slenderness) in enumerate(rows):
+        own_class = key, height, slenderness
         try:
             kind = given.get(name) or grown.get(own_class)
             if kind is None:
-                kind = grown[own_class] = _grown_kind(wood[name], *size, seed, notes)
+                kind = grown[own_class] = _grown_kind(wood[name], height, slenderness, seed, notes)
             trees.append(_placed(inventory, row, kind, key, float(yaw[row])))
         except TreeSwayError as error:
             raise error.at(inventory.where(row)) from None
