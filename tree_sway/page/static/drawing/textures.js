@@ -258,11 +258,8 @@ class Brush {
     for (let i = 0; i < 240; i++) {
       const up = random();
       const reach = half * (1 - up) ** 0.6;
-      const light = 0.75 + 0.25 * random();
-      context.fillStyle = css(i % 9 ? [0.64, 0.79, 0.62] : [0.62, 0.5, 0.38], light);
-      context.beginPath();
-      context.arc(middle + reach * (2 * random() - 1), 0.46 - 0.9 * up, 0.016, 0, 7);
-      context.fill();
+      context.fillStyle = css(i % 9 ? [0.64, 0.79, 0.62] : [0.62, 0.5, 0.38], 0.75 + 0.25 * random());
+      context.fillRect(middle + reach * (2 * random() - 1), 0.45 - 0.9 * up, 0.03, 0.03);
     }
   }
 
