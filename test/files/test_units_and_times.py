@@ -114,7 +114,10 @@ def test_whole_steps_without_a_unit_are_said(tmp_path: Path, header: str, is_sai
 def test_a_range_with_a_slash_is_said() -> None:
     columns = InventoryColumns(parse_table(['dbh,x', '18/20,0', '20/18/15,0'], 'trees.csv'))
     assert columns.numbers(0, stems=True)[0][0] == 19.0
-    assert columns.notes == ['1 cells of dbh are ranges: their middles']
+    assert columns.notes == [
+        '1 cells of dbh have several stems: one of their section',
+        '1 cells of dbh are ranges: their middles',
+    ]
 
 
 @pytest.mark.parametrize('kind', sorted(UNITS))
