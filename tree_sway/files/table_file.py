@@ -73,7 +73,7 @@ class TextTable:
     Where the rows are no text but cells, these are the texts.
     ``header_line`` and ``unit_line`` are the lines of names and units; ``units`` are those of the
     columns, if they are in a separate row. ``row_name`` is the name of a row in messages.
-    ``above`` are the lines above the header.
+    ``above`` are the lines above the header, ``note`` is what its reader has to be told.
     """
 
     columns: tuple[str, ...]
@@ -86,6 +86,7 @@ class TextTable:
     units: tuple[str, ...] = ()
     row_name: str = 'line'
     above: tuple[str, ...] = ()
+    note: str = ''
 
     @property
     def rows(self) -> range:

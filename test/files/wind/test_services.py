@@ -7,11 +7,13 @@ from __future__ import annotations
 from collections.abc import Callable
 import json
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError
+from tree_sway.files.wind.table import read_table_wind
 from tree_sway.files.wind.wind_file import read_wind
 
 KNOT, MPH, KMH = 1852.0 / 3600.0, 0.44704, 1.0 / 3.6
@@ -380,3 +382,15 @@ def test_a_service_is_refused_by_cause(name: str, tmp_path: Path) -> None:
     with pytest.raises(FormatError, match=why) as caught:
         read_wind(path, turbulence=False)
     assert caught.value.cure
+
+
+def test_of_two_series_of_one_name_it_says_which_value_is_taken(tmp_path: Path) -> None:
+    hours = [cast('dict[str, list[object]]', frost(k)) for k in range(6)]
+    for each in hours:
+        each['observations'].append({'elementId': 'wind_speed', 'value': 8.0, 'unit': 'm/s'})
+    path = tmp_path / 'wind.json'
+    path.write_text(json.dumps({'@type': 'ObservationResponse', 'data': hours}))
+    found = read_table_wind(path, turbulence=False)
+    np.testing.assert_allclose(np.linalg.norm(found.velocity, axis=1), 8.0)
+    said = 'several values, of which the last: wind_speed at 2026-03-01T15:00:00.000Z'
+    assert any(said in note for note in found.notes), found.notes

@@ -38,13 +38,18 @@ def wide_table(
     """
     Return a row for each time, in the column ``clock``, with the newest value of each name.
 
-    ``unit_of`` are the units of some names.
+    ``unit_of`` are the units of some names. Of several values of a name at a time the last is
+    taken, and said.
     """
     by_time: dict[str, dict[str, str]] = {}
+    several: dict[str, str] = {}
     lines: dict[str, int] = {}
     newest: dict[str, str] = {}
     for line, time, name, value in values:
-        by_time.setdefault(time, {})[name] = value
+        at_time = by_time.setdefault(time, {})
+        if at_time.get(name, value) != value:
+            several[name] = time
+        at_time[name] = value
         lines.setdefault(time, line)
         newest[name] = ''
     names = list(newest)
@@ -57,7 +62,9 @@ def wide_table(
     columns = short if len({*short}) == len(short) else names
     numbers = [lines[time] for time in sorted(by_time)]
     units = [(unit_of or {}).get(name, '') for name in names]
-    return table_of_cells([clock, *columns], rows, source, numbers, ['', *units])
+    table = table_of_cells([clock, *columns], rows, source, numbers, ['', *units])
+    found = ', '.join(f'{name} at {time}' for name, time in several.items())
+    return replace(table, note=f'several values, of which the last: {found}' if found else '')
 
 
 def widened(table: TextTable) -> TextTable:

@@ -108,7 +108,10 @@ def read_table_wind(
         times = row_times(table, *time, stored.tolist())
     _fill(rows, table, winds[stored], stored, times.seconds, speed_unit)
     record = rows.record(
-        epoch=times.epoch, yaw=yaw, direction_convention=convention, notes=(*notes, times.note)
+        epoch=times.epoch,
+        yaw=yaw,
+        direction_convention=convention,
+        notes=(*notes, times.note, whole.note),
     )
     return filled_means(record, turbulence, seed)
 
