@@ -13,6 +13,7 @@ beside it. The longest of these in the document is the table.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 import re
 from typing import Any
 
@@ -30,7 +31,14 @@ from tree_sway.files.json_values import (
     unit_beside,
 )
 from tree_sway.files.layouts.layout import begins, Layout
-from tree_sway.files.layouts.long import is_wind, unit_for, Value, wide_table, widened
+from tree_sway.files.layouts.long import (
+    is_wind,
+    note_of_several,
+    unit_for,
+    Value,
+    wide_table,
+    widened,
+)
 from tree_sway.files.layouts.spread_columns import spread_rows
 from tree_sway.files.layouts.station_messages import (
     SIGNALK_PAIRS,
@@ -211,12 +219,21 @@ def _words(value: Any) -> list[Any]:
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
     system = {'units': text_of(units['*'])} if units.get('*') else {}
-    records = [dict(flat(each)) | system for each in map(_by_name, node)]
+    records = list[dict[str, str]]()
+    several: dict[str, str] = {}
+    for number, each in enumerate(map(_by_name, node), start=1):
+        record: dict[str, str] = {}
+        for name, text in flat(each):
+            if record.get(name, text) != text and is_wind(name.removesuffix('.value')):
+                several[name] = f'record {number}'
+            record[name] = text
+        records.append(record | system)
     names = list(dict.fromkeys(name for record in records for name in record))
     rows = [[record.get(name, '') for name in names] for record in records]
     beside = [unit_beside(records[0], name) or unit_for(name, units) for name in names]
     titles = [text_of(units.get(f'#{name}', name)) for name in names]
-    return widened(table_of_cells(titles, rows, source, units=beside))
+    table = table_of_cells(titles, rows, source, units=beside)
+    return widened(replace(table, note=note_of_several(several)))
 
 
 def _by_name(record: dict[str, Any]) -> dict[str, Any]:

@@ -63,8 +63,13 @@ def wide_table(
     numbers = [lines[time] for time in sorted(by_time)]
     units = [(unit_of or {}).get(name, '') for name in names]
     table = table_of_cells([clock, *columns], rows, source, numbers, ['', *units])
-    found = ', '.join(f'{name} at {time}' for name, time in several.items())
-    return replace(table, note=f'several values, of which the last: {found}' if found else '')
+    return replace(table, note=note_of_several(several))
+
+
+def note_of_several(times: Mapping[str, str]) -> str:
+    """Return a note of the names that have several values at a time, by their last times."""
+    found = ', '.join(f'{name} at {time}' for name, time in times.items())
+    return f'of several values the last is taken: {found}' if found else ''
 
 
 def widened(table: TextTable) -> TextTable:
