@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError
-from tree_sway.files.motion import read_motion
+from tree_sway.files.motion import read_motion, read_strain
 from tree_sway.files.scenes import Inventory, inventory_of, inventory_table
 from tree_sway.files.text_file import read_head
 from tree_sway.files.trees import open_tree
@@ -248,3 +248,40 @@ def test_counts_of_a_logger_by_the_words_above_them(tmp_path: Path) -> None:
     record = read_motion(written(tmp_path, text))
     assert record.acceleration is not None
     np.testing.assert_allclose(record.acceleration[:, 2], 9.80665)
+
+
+def test_a_temperature_that_falls_is_no_clock(tmp_path: Path) -> None:
+    rows = [
+        f'"0{9 - k // 24}.03.2024 {23 - k % 24:02}:00";"{9.5 - 0.1 * k:.1f}";'
+        f'"Ветер, дующий с юго-запада";"{3 + k % 2}"'
+        for k in range(8)
+    ]
+    text = '\n'.join(['"Местное время в Риге";"T";"DD";"Ff"', *rows])
+    found = read_wind(written(tmp_path, text), turbulence=False)
+    np.testing.assert_allclose(np.diff(found.time), 3600.0)
+    np.testing.assert_allclose(np.linalg.norm(found.velocity, axis=1)[:2], [4.0, 3.0])
+    np.testing.assert_allclose(found.velocity[0, :2], np.sqrt(0.5) * 4.0)
+
+
+def test_places_of_a_scan_with_many_digits_are_metres(tmp_path: Path) -> None:
+    rows = ['3.276082,-7.351153,9,640', '-11.120645,15.204001,8,431', '18.5,-2.125,7,512']
+    found = inventory(tmp_path, '\n'.join(['x,y,height,n.pts.est', *rows]))
+    np.testing.assert_allclose(found.x, [3.276082, -11.120645, 18.5])
+    assert 'x and y are taken in m: as degrees the trees would be too far apart' in found.notes
+    city = '\n'.join(f'2.35{k}12,48.85{k}12,9,1' for k in range(3))
+    assert abs(inventory(tmp_path, f'x,y,height,n\n{city}').x).max() < 400.0
+
+
+def test_strains_with_a_decimal_comma(tmp_path: Path) -> None:
+    rows = [f'{0.02 * k:.2f}\t{60.0 + k:.1f}\t{10.0 - k:.1f}'.replace('.', ',') for k in range(9)]
+    text = '\n'.join(['Zeit [s]\tNord [µm/m]\tOst [µm/m]', *rows])
+    found = read_strain(written(tmp_path, text, 'pull.asc'))
+    np.testing.assert_allclose(found.strain[0, 0], [6e-5, 1e-5])
+    np.testing.assert_allclose(np.diff(found.time), 0.02)
+
+
+def test_components_by_the_names_of_grib(tmp_path: Path) -> None:
+    rows = [f'2024-03-05T0{k}:00:00Z,3.0,4.0' for k in range(5)]
+    text = '\n'.join(['time,ugrd10m [m/s],vgrd10m [m/s]', *rows])
+    found = read_wind(written(tmp_path, text), turbulence=False)
+    np.testing.assert_allclose(found.velocity, [[3.0, 4.0, 0.0]] * 5)

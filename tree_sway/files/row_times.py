@@ -44,7 +44,8 @@ def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
     clocks = table.find_all('time')
     clocks.sort(key=lambda each: (not _run_on(texts[each]), each in of_day))
     dated = [each for each in columns if _are_dates(texts[each])]
-    if not clocks or not _run_on(texts[clocks[0]]):
+    is_letter = [len(names[each]) == 1 and _run_on(texts[dated[0]]) for each in clocks if dated]
+    if not clocks or not _run_on(texts[clocks[0]]) or any(is_letter[:1]):  # as T, a temperature
         clocks = dated[:1] or clocks
     if not clocks:
         return None

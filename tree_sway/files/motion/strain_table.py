@@ -65,8 +65,11 @@ def read_strain(path: Path) -> StrainRecord:
     """
     numbers, lines = filled_lines(read_lines(path))
     first = lines[0] if lines else ''
-    split = partial(split_row, separator=next((each for each in '\t;,' if each in first), ' '))
+    separator = next((each for each in '\t;,' if each in first), ' ')
+    split = partial(split_row, separator=separator)
     columns = tuple(split(first))
+    if separator != ',':  # a comma is that of a decimal fraction
+        lines = [line.replace(',', '.') for line in lines]
     begin = len(columns) > 1 and finite(columns[1]) is None
     table = TextTable(columns, numbers[begin:], lines[begin:], split, str(path))
     size = len(columns)

@@ -39,6 +39,8 @@ _MOST_EASTING = 9e5
 _FEW_DIGITS = 1
 _CLOSEST = 0.1
 """Mean distance of trees below which places of `_FEW_DIGITS` are degrees too [m]."""
+_FARTHEST = 1.0
+"""Mean distance of trees above which places are no degrees [deg]."""
 
 
 Places = tuple[Floats, Floats]
@@ -114,7 +116,9 @@ def _of_map(columns: InventoryColumns, east: Column, north: Column) -> Places:
     digits = min(_digits(columns, east.index), _digits(columns, north.index))
     if _in_range(x, _MOST_LONGITUDE) and _in_range(y, _MOST_LATITUDE):
         reason = ''
-        if digits >= _DEGREE_DIGITS:
+        if digits >= _DEGREE_DIGITS and _distance(x, y) > _FARTHEST:
+            columns.note(f'{names} are taken in m: as degrees the trees would be too far apart')
+        elif digits >= _DEGREE_DIGITS:
             reason = 'by their many digits'
         elif digits >= _FEW_DIGITS and _distance(x, y) < _CLOSEST:
             reason = 'as the trees would touch in metres'

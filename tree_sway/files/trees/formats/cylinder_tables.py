@@ -82,16 +82,14 @@ def _of_one_order(parent: Ints, order: Floats, size: Floats) -> NDArray[np.bool_
 
 ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read, FITTED)
 _OF_FOREST = has_columns('ID', 'parentID', 'startX', 'branchOrder')
-_OF_TREE = has_columns('segmentID', 'parentSegmentID', 'startX', 'branchOrder')
-SIMPLEFOREST = FileFormat(
-    'simpleforest', (), lambda head: _OF_FOREST(head) or _OF_TREE(head), _read, FITTED
-)
+SIMPLEFOREST = FileFormat('simpleforest', (), _OF_FOREST, _read, FITTED)
+_OF_SEGMENTS = has_columns('segmentID', 'parentSegmentID', 'startX', 'startY', 'startZ', 'radius')
 _OF_TWIG = has_columns('startX', 'startY', 'startZ', 'radius', 'parent')
 _HAS_END, _HAS_AXIS = has_columns('endX', 'endY', 'endZ'), has_columns('axisX', 'axisY', 'axisZ')
 NAMED = FileFormat(
     'rtwig',
     (),
-    lambda head: _OF_TWIG(head) and (_HAS_END(head) or _HAS_AXIS(head)),
+    lambda head: (_OF_TWIG(head) or _OF_SEGMENTS(head)) and (_HAS_END(head) or _HAS_AXIS(head)),
     _read,
     FITTED,
 )
