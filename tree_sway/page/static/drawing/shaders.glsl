@@ -264,7 +264,7 @@ void main() {
   const float least = 0.3; // of the sun: few cards for many leaves hide more of it than these would
 #else
   edge = min(1.0, 2.2 * abs(dot(flat_, back)));
-  float own = 0.8;
+  float own = 0.6;
   const float least = 0.12;
 #endif
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
@@ -280,13 +280,13 @@ void main() {
   float sunny = mix(least, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
   vec3 up = sky * (0.27 + 0.8 * near) * (0.68 + 0.32 * n.z) * (0.8 + 0.2 * turnedTo);
   // Light through a leaf is yellow, and is seen most against the sun.
-  vec3 through = vec3(1.8, 2.1, 0.6) * max(-side * dot(flat_, light), 0.0) * (0.9 - 0.5 * turnedTo);
+  vec3 through = vec3(1.4, 1.6, 0.5) * max(-side * dot(flat_, light), 0.0) * (0.9 - 0.5 * turnedTo);
   vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.1 + 2.4 * max(0.8 * across + 0.2, 0.0)) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 spot = 9.0 * shadowTop * p;
   float limb = 0.5 * (sin(spot.x + 1.7 * spot.z) + sin(spot.y - 1.3 * spot.z + 1.0));
-  vec3 hue = dulled * (1.0 + 0.08 * sin(9.0 * flutter.y) + vec3(0.05, 0.0, -0.06) * (sin(5.0 * flutter.y) + limb));
+  vec3 hue = dulled * (1.0 + 0.05 * sin(9.0 * flutter.y) + vec3(0.05, 0.0, -0.06) * (sin(5.0 * flutter.y) + limb));
   hue += (0.5 * (flutter.w - 1.0) + 0.12 * max(0.0, near - 0.7)) * vec3(0.35, 0.2, -0.2);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y) + 0.35 * limb);
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.25, -0.8, 0.4) * (0.6 * sin(2.0 * flutter.y) - 0.7 * limb));

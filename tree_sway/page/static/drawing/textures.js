@@ -16,7 +16,7 @@ const {
   /** Width of a small card of short needles over that of others. */
   TWIG,
   /** Short needles: gap between side shoots over the length of a shoot, and the least of the picture; length of a needle over the
-   * gap; how far side shoots lean from their axis, and needles [rad]. */
+   * gap; how far side shoots lean from their axis, and needles [rad]; those in tufts are of conifers that shed them. */
   NEEDLES,
   /** Length of the part of a shoot that long needles clothe, over their length. */
   BRUSH,
@@ -170,8 +170,8 @@ class Brush {
   /** A branchlet with side shoots clad in needles, apart from each other like fingers: dark near the axis,
    * lighter at the tips. @param {number} shoot length of needles and shoot together */
   needles(shoot) {
-    const { look: { form, twig }, random, half } = this;
-    const [gap, least, share, leaning, tilted] = NEEDLES[form];
+    const { look: { form, twig, autumn }, random, half } = this;
+    const [gap, least, share, leaning, tilted] = NEEDLES[autumn ? "tufted" : form];
     const apart = Math.max(least, gap * shoot);
     const long = share * apart;
     const wide = Math.max(0.1 * long, 0.004);
@@ -250,16 +250,16 @@ class Brush {
     });
   }
 
-  /** A candle of white flowers beside the leaf, as high as the picture; its colours allow for those that green is
-   * dulled by. */
+  /** A candle of cream flowers with pink and yellow spots beside the leaf, round, and less high than the picture; its
+   * colours allow for those that green is dulled by. */
   candle() {
-    const { context, random } = this;
+    const { random } = this;
     const [middle, half] = [0.5 * (1 + 1 / LEAF_SHARE), 0.3 * (1 / LEAF_SHARE - 1)];
     for (let i = 0; i < 240; i++) {
       const up = random();
       const reach = half * (1 - up) ** 0.6;
-      context.fillStyle = css(i % 9 ? [0.64, 0.79, 0.62] : [0.62, 0.5, 0.38], 0.75 + 0.25 * random());
-      context.fillRect(middle + reach * (2 * random() - 1), 0.45 - 0.9 * up, 0.03, 0.03);
+      const color = css(places.candle[i % 5], 0.75 + 0.25 * random());
+      this.at(middle + reach * (2 * random() - 1), 0.38 - 0.78 * up, 0, 1, () => this.line("0V.02", 0.026, color));
     }
   }
 
