@@ -275,7 +275,7 @@ class Brush {
       return;
     }
     // The larger a leaflet is, the fewer there are.
-    const pairs = size * slenderness > 0.035 ? 3 : 5;
+    const pairs = size * slenderness > 0.035 ? 4 : 5;
     const long = 1.1 / pairs;
     this.line(0.98 - long, 0.02, color);
     for (let i = 0; i <= 2 * pairs; i++) {
