@@ -123,7 +123,7 @@ class Brush {
   color(light, young) {
     const { random, base, fresh } = this;
     const mixed = young + 0.3 * random();
-    return css(base.map((c, i) => c + mixed * (fresh[i] - c)), light * (0.85 + 0.3 * random()));
+    return css(base.map((c, i) => c + mixed * (fresh[i] - c)), light * (0.9 + 0.2 * random()));
   }
 
   /** Paint in another frame. @param {number} x @param {number} y @param {number} turn @param {number} scale
@@ -162,7 +162,7 @@ class Brush {
       this.at(foot, 0, Math.atan2(y, x - foot), 1, () => twig(Math.hypot(x - foot, y)));
     }
     places.forEach(({ x, y, lean, size }, i) => {
-      const light = 0.55 + (0.5 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
+      const light = 0.65 + (0.4 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
       this.at(x, y, lean, 1, () => this.leaf(size, light));
     });
   }
@@ -275,7 +275,7 @@ class Brush {
       return;
     }
     // The larger a leaflet is, the fewer there are.
-    const pairs = size * slenderness > 0.035 ? 3 : 5;
+    const pairs = size * slenderness > 0.035 ? 4 : 5;
     const long = 1.1 / pairs;
     this.line(0.98 - long, 0.02, color);
     for (let i = 0; i <= 2 * pairs; i++) {
