@@ -58,3 +58,10 @@ def test_few_measurements_leave_what_was_found_before() -> None:
     found = missed_noise(LAW, SENSED, NOISE, 3.0 * NOISE, measured(NOISE)[:299])
     np.testing.assert_array_equal(found, 3.0 * NOISE)
     np.testing.assert_array_equal(missed_noise(LAW, SENSED, NOISE, NOISE, np.zeros((0, 6))), NOISE)
+
+
+def test_a_push_is_no_noise() -> None:
+    pushed = measured(NOISE)
+    pushed[2000:2600] += 40.0
+    found = missed_noise(LAW, SENSED, NOISE, NOISE, pushed)
+    assert found == pytest.approx(NOISE, rel=0.15)

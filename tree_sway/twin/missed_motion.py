@@ -23,6 +23,9 @@ _ROUNDS = 2
 _SETTLED = 0.25
 """Share of a record in which a filter settles."""
 
+_PARTS = 15
+"""Parts of a record, by the median of which a push or a knock counts little."""
+
 _LEAST = 300
 """Number of measurements from which on the noise is found by them."""
 
@@ -61,7 +64,8 @@ def missed_noise(
         gains = steady_filter(law, sensed, noise)
         estimate = Estimate(gains, np.zeros(len(sensed), dtype=np.int64))
         estimate.tried(settling)
-        larger = estimate.tried(settled) - np.square(gains.deviation)
+        parts = [estimate.tried(part) for part in np.array_split(settled, _PARTS)]
+        larger = np.median(parts, axis=0) - np.square(gains.deviation)
         of_quantity = larger.reshape(-1, 3).mean(axis=1).repeat(3)
         squares = np.maximum(np.square(noise) + of_quantity, np.square(least))
         noise = np.sqrt(squares)
