@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -160,12 +159,9 @@ class GainDesign:
         def found_later() -> Gains:
             strength = strength_of(beyond, usual)
             own, others = (replace(each, driven=strength * each.driven) for each in (law, apart))
-            noise_of = {}
-            for key, each, motion in zip(keys, tried, beyond, strict=True):
-                # A push in a calm is a stronger force, and no noise.
-                stronger = max(strength_of([motion], usual, math.inf), strength)
-                moved_more = replace(law, driven=stronger * law.driven)
-                noise_of[key] = missed_noise(moved_more, *each)
+            noise_of = {
+                key: missed_noise(own, *each) for key, each in zip(keys, tried, strict=True)
+            }
             noise = np.concatenate([*noise_of.values()])
             gains = steady_filter(own, sensed, noise)
             told = told_shares(gains, others, noise)

@@ -22,7 +22,7 @@ _BANDS = ((0.03, 0.25), (0.5, 2.2))
 """Slow and fast sway, frequencies over the first one of the tree [-]."""
 
 _LEAST = 0.02
-"""Least power measured in a band over that expected [-]."""
+"""Least power measured in a band over that expected; more than expected is taken for that [-]."""
 
 _TAPERED, _LINES = 0.1, 40
 """Share of a record at its ends that is tapered, and lines of a band whose power is computed."""
@@ -58,19 +58,19 @@ class UsualLaw(NamedTuple):
     dt: float
 
 
-def strength_of(sensors: Sequence[BeyondModel], law: UsualLaw, most: float = 1.0) -> float:
+def strength_of(sensors: Sequence[BeyondModel], law: UsualLaw) -> float:
     """
     Power of the unknown forces over the usual one [-].
 
     It is the geometric mean over slow and fast sway of the power measured, less that of the noise,
-    over that expected; a ratio above ``most`` is taken for that.
+    over that expected.
     """
     logs = list[float]()
     for low, high in _BANDS:
         powers = [_powers(each, law, low, high) for each in sensors]
         measured, expected = np.sum(powers, axis=0).tolist()
         if expected:
-            logs.append(math.log(min(max(measured / expected, _LEAST), most)))
+            logs.append(math.log(min(max(measured / expected, _LEAST), 1.0)))
     return math.exp(sum(logs) / len(logs)) if logs else 1.0
 
 

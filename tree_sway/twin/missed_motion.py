@@ -24,7 +24,10 @@ _SETTLED = 0.25
 """Share of a record in which a filter settles."""
 
 _PARTS = 15
-"""Parts of a record, by the median of which a push or a knock counts little."""
+"""Parts of a record whose squares are compared."""
+
+_MOST = 2.0
+"""Largest mean of the squares over their median, so that a push or a knock counts little."""
 
 _LEAST = 300
 """Number of measurements from which on the noise is found by them."""
@@ -65,8 +68,8 @@ def missed_noise(
         estimate = Estimate(gains, np.zeros(len(sensed), dtype=np.int64))
         estimate.tried(settling)
         parts = [estimate.tried(part) for part in np.array_split(settled, _PARTS)]
-        larger = np.median(parts, axis=0) - np.square(gains.deviation)
+        squares = np.minimum(np.mean(parts, axis=0), _MOST * np.median(parts, axis=0))
+        larger = squares - np.square(gains.deviation)
         of_quantity = larger.reshape(-1, 3).mean(axis=1).repeat(3)
-        squares = np.maximum(np.square(noise) + of_quantity, np.square(least))
-        noise = np.sqrt(squares)
+        noise = np.sqrt(np.maximum(np.square(noise) + of_quantity, np.square(least)))
     return noise
