@@ -65,3 +65,10 @@ def test_a_push_is_little_noise() -> None:
     pushed[2000:2600] += 40.0
     found = missed_noise(LAW, SENSED, NOISE, NOISE, pushed)
     assert (found < 5.0 * NOISE).all()  # 80 by the mean of all squares
+
+
+def test_measurements_that_are_missing_are_left_out() -> None:
+    known = measured(NOISE)
+    known[1500, 4] = np.nan
+    found = missed_noise(LAW, SENSED, NOISE, NOISE, known)
+    assert found == pytest.approx(NOISE, rel=0.1)

@@ -50,7 +50,8 @@ def missed_noise(
     before
         What was found before, to begin from, or the least again, (p,).
     measured
-        Measurements at equal steps of the law, the oldest first, (n, p).
+        Measurements at equal steps of the law, the oldest first, (n, p); rows with one that is
+        not finite are left out.
 
     Returns
     -------
@@ -60,6 +61,7 @@ def missed_noise(
 
     """
     noise = np.maximum(before, least)
+    measured = measured[np.isfinite(measured).all(axis=1)]
     if len(measured) < _LEAST:
         return noise
     settling, settled = np.split(measured, [round(_SETTLED * len(measured))])
