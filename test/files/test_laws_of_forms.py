@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError
+from tree_sway.files.layouts.known import table_of
 from tree_sway.files.motion import read_motion, read_strain
 from tree_sway.files.scenes import Inventory, inventory_of, inventory_table
 from tree_sway.files.text_file import read_head
@@ -285,3 +286,51 @@ def test_components_by_the_names_of_grib(tmp_path: Path) -> None:
     text = '\n'.join(['time,ugrd10m [m/s],vgrd10m [m/s]', *rows])
     found = read_wind(written(tmp_path, text), turbulence=False)
     np.testing.assert_allclose(found.velocity, [[3.0, 4.0, 0.0]] * 5)
+
+
+def test_columns_of_a_date_are_no_wind_and_lines_about_a_column_tell_its_unit(
+    tmp_path: Path,
+) -> None:
+    head = '% Wind speed WS25 knots 25 m\n%YY MM DD HH Min WD25 WS25\n'
+    rows = ''.join(f'2026 05 09 {hour:02} 00 305 {10 + hour}\n' for hour in range(9))
+    wind = read_wind(written(tmp_path, head + rows), turbulence=False)
+    np.testing.assert_allclose(np.hypot(*wind.velocity[0, :2]), 10.0 * 1852.0 / 3600.0)
+    np.testing.assert_allclose(np.degrees(np.arctan2(*-wind.velocity[0, :2])), 305.0 - 360.0)
+
+
+def test_names_are_below_the_heads_of_labview() -> None:
+    heads = 'LabVIEW Measurement\nDate\t2026/04/21\n***End_of_Header***\nDate\t2026/04/21\n'
+    units = 'Y_Unit_Label\tg\tStrain\n***End_of_Header***\n'
+    rows = 'X_Value\tsila_X\tDMS\tComment\n\t0,5\t1E-4\n'
+    table = table_of((heads + units + rows).splitlines(), 'a.lvm')
+    assert table.columns == ('X_Value', 'sila_X', 'DMS', 'Comment')
+    assert table.units[1] == 'g'
+    assert table.values([1]).tolist() == [[0.5]]
+
+
+@pytest.mark.parametrize(
+    ('names', 'stems', 'note'),
+    [
+        ('x,y,dbh', (10, 15, 52, 126, 283, 533), 'dbh is taken as mm'),
+        ('gx,gy,hom,dbh', (10, 15, 52), 'dbh is in mm, as of ForestGEO'),
+    ],
+)
+def test_stems_of_plots_are_in_millimetres(
+    tmp_path: Path, names: str, stems: tuple[int, ...], note: str
+) -> None:
+    place = ','.join('1' for _ in names.split(',')[1:])
+    found = inventory(tmp_path, '\n'.join((names, *(f'{place},{each}' for each in stems))))
+    np.testing.assert_allclose(found.diameter, np.array(stems) / 1000.0)
+    assert note in found.notes
+
+
+def test_girths_of_old_giants_stay_in_centimetres(tmp_path: Path) -> None:
+    found = inventory(tmp_path, 'x,y,girth\n' + ''.join(f'0,0,{g}\n' for g in (310, 480, 950)))
+    np.testing.assert_allclose(found.diameter, np.array([3.1, 4.8, 9.5]) / np.pi)
+
+
+def test_columns_of_another_unit_are_no_strain(tmp_path: Path) -> None:
+    text = 'Zeit [s]\tN [µm/m]\tO [µm/m]\tNeigung [°]\n0,0\t26,5\t-38\t0,4\n0,1\t27,5\t-37\t0,4\n'
+    record = read_strain(written(tmp_path, text))
+    np.testing.assert_allclose(record.strain[0], [[26.5e-6, -38e-6]])
+    assert 'columns that are not used: Neigung [°]' in record.notes

@@ -26,6 +26,7 @@ from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import parse_table, separator_of, split_row, TextTable
 
 _HEAD = 40
+_HEAD_ENDS = '***End_of_Header***'
 _MOST_COLUMNS = 200
 _MOST_BELOW = 3
 _NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
@@ -43,11 +44,13 @@ def header_line(lines: Sequence[str]) -> int | None:
     """
     Line of the header: the first of those that name most quantities.
 
-    A comment is one only where no other line names two.
+    A comment is one only where no other line names two. It is below the heads of LabVIEW.
     """
     plain: dict[int, int] = {}
     hashed: dict[int, int] = {}
-    for number, line in enumerate(lines[:_HEAD]):
+    ends = (number for number, line in enumerate(lines[:_HEAD]) if line.startswith(_HEAD_ENDS))
+    first = max(ends, default=0)
+    for number, line in enumerate(lines[first:_HEAD], start=first):
         filled = list(filter(None, _cells(line)))
         n_numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
         is_comment = _is_comment(line)
@@ -116,8 +119,9 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
     """
     Return a table without the rows of units and of other words below its header.
 
-    It is itself without a row of units; one above the header has as many cells as that. This
-    may have names too, as in ``風速(m/s)`` below ``WS``.
+    It is itself without a row of units; one above the header has as many cells as that, but for
+    a remark at its end, and none of its names. This may have names too, as in ``風速(m/s)`` below
+    ``WS``.
     """
     words = []
     for text in table.texts[:_MOST_BELOW]:
@@ -126,7 +130,9 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
             break
         words.append([_unit_below(cell) for cell in cells])
     split = map(table.split, table.above)
-    above = [[*map(_unit_below, row)] for row in split if len(row) == len(table.columns)]
+    size = len(table.columns)
+    told = (row for row in split if size - 2 < len(row) <= size and not {*row} & {*table.columns})
+    above = [[*map(_unit_below, row)] for row in told]
     rows = [row for row in (*words, *above) if _are_units(table, row)]
     if not rows:
         return replace(table, units=units_above(table, table.above))
@@ -144,7 +150,9 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
 
 def units_above(table: TextTable, above: Sequence[str]) -> tuple[str, ...]:
     """Return units of columns that lines tell, as ``# WSPD: wind speed (knots)``; may be empty."""
-    said = [[part.strip('#%/" ') for part in _BETWEEN.split(line)] for line in above]
+    said = [
+        [part.strip('#%/" ') for part in (*_BETWEEN.split(line), *line.split())] for line in above
+    ]
 
     def unit_of(column: str) -> str:
         kinds = [COLUMNS[each]['unit'] for each in HEADER if is_named(column, each)]

@@ -19,7 +19,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import name_and_unit
+from tree_sway.files.column_names import name_and_unit, unit_known
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.paths import of_file
 from tree_sway.files.table_file import filled_lines, split_row, TextTable
@@ -72,17 +72,19 @@ def read_strain(path: Path) -> StrainRecord:
         lines = [line.replace(',', '.') for line in lines]
     begin = len(columns) > 1 and finite(columns[1]) is None
     table = TextTable(columns, numbers[begin:], lines[begin:], split, str(path))
-    size = len(columns)
-    if size < 3 or not size % 2:
+    others = range(1, len(columns))
+    units = [name_and_unit(column, 'strain')[1] for column in columns]
+    gauges = [n for n in others if not units[n] or unit_known('strain', units[n])] or others
+    if not gauges or len(gauges) % 2:
         raise table.error(
-            f'{max(size - 1, 0)} columns beside the time',
+            f'{len(gauges)} columns beside the time',
             cure='give the time, then two columns for each place: north side, east side',
         )
     dated = table.cells(0, table.rows)
     times = times_of(dated)
-    unit = name_and_unit(columns[1], 'strain')[1]
+    unit = units[gauges[0]]
     factor = table.known_factor('strain', unit) if unit else 1.0
-    values = table.values(range(1, size)) * factor
+    values = table.values(gauges) * factor
     if not (np.isfinite(times.seconds).any() and np.isfinite(values).any(axis=0).all()):
         raise table.error(
             f"no time in '{dated[0]}', or a column without numbers",
@@ -95,6 +97,11 @@ def read_strain(path: Path) -> StrainRecord:
             cure='give strain, or its unit in the header, as north [microstrain]; calibrate '
             'voltages',
         )
-    notes = f'{path.name}: {size // 2} pairs of strain, north and east side', times.note
+    unused = ', '.join(columns[each] for each in others if each not in gauges)
+    notes = (
+        f'{path.name}: {len(gauges) // 2} pairs of strain, north and east side',
+        times.note,
+        f'columns that are not used: {unused}' if unused else '',
+    )
     pairs = values.reshape(len(values), -1, 2)
     return StrainRecord(times.seconds, pairs, str(path), times.epoch, tuple(filter(None, notes)))

@@ -15,6 +15,7 @@ the column of gusts if there is one (`filled_means`). A row that is not numbers 
 from __future__ import annotations
 
 from array import array
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 import re
@@ -88,7 +89,8 @@ def read_table_wind(
         convention = direction_convention or 'to'
     else:
         found = table.find('wind_speed')
-        from_where, usual = _direction(table, found, direction)
+        taken = [*(time or ([],))[0], *([found.index] if found else [])]  # DD may be a day
+        from_where, usual = _direction(table, taken, direction)
         _refuse_missing(whole, time, *(components[:2] or (found, from_where)))
         assert found is not None
         assert from_where is not None
@@ -142,12 +144,12 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
 
 
 def _direction(
-    table: TextTable, speed: Column | None, given: float | None
+    table: TextTable, taken: Sequence[int], given: float | None
 ) -> tuple[Column | float | None, str]:
     """Column of the direction, else the given one, and whether it is ``from`` or ``to`` there."""
     quantity = 'wind_direction' if table.find_all('wind_direction') else 'wind_to'
     for place in table.find_all(quantity):
-        if speed is None or place != speed.index:
+        if place not in taken:
             unit = table.unit_of(place, 'wind_direction') or maker_of(table).get('direction')
             factor = table.known_factor('angle', unit or 'deg')
             return Column(place, factor), 'to' if quantity == 'wind_to' else 'from'

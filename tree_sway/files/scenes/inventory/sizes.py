@@ -50,14 +50,17 @@ def diameters_of(columns: InventoryColumns) -> Floats:
         if not stems:
             continue
         index = stems[0]
-        told = columns.table.unit_of(index, quantity) or maker_of(columns.table).get(quantity)
-        values, unit = columns.numbers(index, stems=True, unit=told or '')
+        name = columns.table.columns[index]
+        told, maker = columns.table.unit_of(index, quantity), maker_of(columns.table)
+        if not told and maker.get(quantity):
+            told = maker[quantity]
+            columns.note(f'{name} is in {told}, as of {maker["maker"]}')
+        values, unit = columns.numbers(index, stems=True, unit=told)
         for each in stems[1:]:
             values = np.hypot(values, np.nan_to_num(columns.numbers(each, unit=unit)[0]))
         factor = unit_factor('length', unit)
         if factor is None:
             factor, why = _stem_unit(values / over, columns)
-            name = columns.table.columns[index]
             columns.note(f'{name} is taken as {_SAID[factor]}{why}')
         columns.has_inches |= factor == _INCH
         own = values * factor / over
@@ -87,7 +90,8 @@ def _stem_unit(values: Floats, columns: InventoryColumns) -> tuple[float, str]:
     has_fractions = bool((positive != np.round(positive)).any())
     if has_fractions and float(np.quantile(positive, 0.9)) <= 3.0:
         return 1.0, ''
-    if middle > 250.0:
+    thin, thick = np.quantile(positive, (0.1, 0.9)) if len(positive) else (0.0, 0.0)
+    if middle > 250.0 or thick > 250.0 > 4.0 * thin:  # no saplings among old giants
         return _MM, ''
     if columns.is_in_states:
         return _INCH, ', as the trees stand in the United States'
