@@ -210,6 +210,7 @@ def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
         ('a.TXT', '"COMMENT",\n"STEM N/E"\n"DATE","11-14-2026"\n', 'a recording of Hioki'),
         ('a.csv', 'Trajectories\n120\n,,A,,\nFrame,Sub Frame,X,Y,Z\n', 'frames are no times'),
         ('a.log', 'a/g:\t702\t422\t4139\t-39\t9\t-8\n', 'whose range and rate are set in its'),
+        ('a.csv', '--- Data Table File Created By ActiGraph ---\n', 'counts of an activity'),
         ('a.mnd', 'FORMAT-1\n2024-03-05 00:00:00 0\nSFAS\n', 'profiles of a sodar in blocks'),
     ],
 )
@@ -226,6 +227,7 @@ def test_the_beginning_tells_before_the_suffix(
     [
         ('a.gml', '<?xml version="1.0"?>\n<core:CityModel>\n', 'a city model of CityGML'),
         ('a.xml', '<?xml version="1.0"?><?xml-stylesheet?>\n<Bestand>\n', 'stand of TreeGrOSS'),
+        ('a.asc', '//X Y Z Intensity\n1 2 3 40\n', 'a point cloud'),
         ('a.csv', '"code","azimuth","dBase","dTip"\n"L1",0,70,50\n', 'the logs and branches'),
     ],
 )
@@ -334,3 +336,29 @@ def test_columns_of_another_unit_are_no_strain(tmp_path: Path) -> None:
     record = read_strain(written(tmp_path, text))
     np.testing.assert_allclose(record.strain[0], [[26.5e-6, -38e-6]])
     assert 'columns that are not used: Neigung [°]' in record.notes
+
+
+def test_strain_of_a_logger_of_campbell_beside_its_other_columns(tmp_path: Path) -> None:
+    logger = '"TOA5","W","CR1000","4","Std","CPU:a.CR1","2","Sway"\n'
+    names = '"TIMESTAMP","RECORD","S(1)","S(2)","Tilt_X"\n'
+    units = '"TS","RN","uStrain","uStrain","deg"\n"","","Smp","Smp","Smp"\n'
+    rows = '"2026-10-14 09:59:55",88,31.2,33.5,0.41\n"2026-10-14 09:59:55.25",89,80,"NAN",0.6\n'
+    path = written(tmp_path, logger + names + units + rows, 'W.dat')
+    np.testing.assert_allclose(
+        read_strain(path).strain[:, 0], [[31.2e-6, 33.5e-6], [80e-6, np.nan]]
+    )
+    with pytest.raises(FormatError, match='a record of motion, not a record of wind'):
+        read_wind(path)
+
+
+def test_names_go_on_beside_units_as_of_kestrel(tmp_path: Path) -> None:
+    names = 'FORMATTED DATE_TIME,Wind Speed,Compass True Direction\n'
+    units = 'yyyy-MM-dd hh:mm:ss a,km/h,Deg,Data Type,Notes\n'
+    rows = ''.join(f'2026-10-14 11:59:{5 * n:02} AM,{7.2 * n:.1f},270,point,\n' for n in range(9))
+    wind = read_wind(written(tmp_path, names + units + rows), turbulence=False)
+    np.testing.assert_allclose(wind.velocity[:, 0], 2.0 * np.arange(9))
+
+
+def test_the_name_of_a_species_is_below_its_genus(tmp_path: Path) -> None:
+    rows = 'x,y,dbh [cm],Genus,SpeciesName\n0,0,12,Inga,laurina\n5,0,12,Fagus,sylvatica\n'
+    assert inventory(tmp_path, rows).species == ('Inga laurina', 'Fagus sylvatica')

@@ -57,7 +57,7 @@ def kind_of(path: Path) -> str:
             return 'sway'
         if is_stand_table(head, path):
             return 'inventory'
-        sure = (each for each in WIND_FORMATS if each.name not in ('sonic', 'csv'))
+        sure = (each for each in WIND_FORMATS if each.name not in ('toa5', 'sonic', 'csv'))
         if any(each.recognise(head) for each in sure):
             return 'wind'
         names = {each.name for each in TREE_FORMATS if each.recognise(head)} - {'treegraph'}
@@ -73,9 +73,9 @@ def _kind_of_table(head: str) -> str:
         table = table_of(head.splitlines()[:_ROWS], '')
         if not table.find_all('time'):
             return ''
-        if any(found[2] for found in map(motion_of, table.columns) if found):
-            return 'motion'
         components = {folded(table.columns[index]) for index in table.find_all('wind_x')}
-        has_wind = table.find_all('wind_speed') or components - {'x', 'east'}
-        return 'wind' if has_wind else ''
+        if table.find_all('wind_speed') or components - {'x', 'east'}:
+            return 'wind'
+        has_motion = any(found[2] for found in map(motion_of, table.columns) if found)
+        return 'motion' if has_motion else ''
     return ''

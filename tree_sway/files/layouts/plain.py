@@ -26,6 +26,7 @@ from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import parse_table, separator_of, split_row, TextTable
 
 _HEAD = 40
+_CAMPBELL = '"TOA5"', 'TOA5'
 _HEAD_ENDS = '***End_of_Header***'
 _MOST_COLUMNS = 200
 _MOST_BELOW = 3
@@ -100,7 +101,12 @@ def _read(lines: list[str], source: str) -> TextTable:
     lines[:first] = [''] * first
     header = _uncommented(lines[first])
     # Of NDBC's two columns mm and MM one is the minute.
-    lines[first] = header.replace(' mm ', ' minute ') if ' MM ' in header else header
+    header = header.replace(' mm ', ' minute ') if ' MM ' in header else header
+    below = _cells(lines[first + 1]) if len(lines) > first + 1 else []
+    if not any(map(_DIGIT.match, below)):  # names may go on beside the units, as of Kestrel
+        sign = separator_of(header)
+        header = sign.join((header, *below[len(split_row(header, sign)) :]))
+    lines[first] = header
     table = parse_table(lines, source)
     names = tuple(_without_place(table.columns))
     return _without_rows_of_units(replace(table, columns=names, above=above))
@@ -133,7 +139,8 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
     size = len(table.columns)
     told = (row for row in split if size - 2 < len(row) <= size and not {*row} & {*table.columns})
     above = [[*map(_unit_below, row)] for row in told]
-    rows = [row for row in (*words, *above) if _are_units(table, row)]
+    is_campbell = any(line.startswith(_CAMPBELL) for line in table.above)
+    rows = [row for row in (*words, *above) if is_campbell or _are_units(table, row)]
     if not rows:
         return replace(table, units=units_above(table, table.above))
     below = len(words) if rows[0] in words else 0

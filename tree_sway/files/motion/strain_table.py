@@ -19,7 +19,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import name_and_unit, unit_known
+from tree_sway.files.column_names import unit_known
+from tree_sway.files.layouts.known import table_of
+from tree_sway.files.layouts.plain import header_line
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.paths import of_file
 from tree_sway.files.table_file import filled_lines, split_row, TextTable
@@ -63,18 +65,11 @@ def read_strain(path: Path) -> StrainRecord:
         No time in its first column, no pairs, an unknown unit, or values that wood does not bear.
 
     """
-    numbers, lines = filled_lines(read_lines(path))
-    first = lines[0] if lines else ''
-    separator = next((each for each in '\t;,' if each in first), ' ')
-    split = partial(split_row, separator=separator)
-    columns = tuple(split(first))
-    if separator != ',':  # a comma is that of a decimal fraction
-        lines = [line.replace(',', '.') for line in lines]
-    begin = len(columns) > 1 and finite(columns[1]) is None
-    table = TextTable(columns, numbers[begin:], lines[begin:], split, str(path))
-    others = range(1, len(columns))
-    units = [name_and_unit(column, 'strain')[1] for column in columns]
-    gauges = [n for n in others if not units[n] or unit_known('strain', units[n])] or others
+    table = _table(read_lines(path), str(path))
+    size = len(table.columns)
+    units = [table.unit_of(index, 'strain') for index in range(size)]
+    of_strain = (n for n in range(1, size) if not units[n] or unit_known('strain', units[n]))
+    gauges = [*of_strain] or range(1, size)
     if not gauges or len(gauges) % 2:
         raise table.error(
             f'{len(gauges)} columns beside the time',
@@ -97,7 +92,7 @@ def read_strain(path: Path) -> StrainRecord:
             cure='give strain, or its unit in the header, as north [microstrain]; calibrate '
             'voltages',
         )
-    unused = ', '.join(columns[each] for each in others if each not in gauges)
+    unused = ', '.join(table.columns[each] for each in range(1, size) if each not in gauges)
     notes = (
         f'{path.name}: {len(gauges) // 2} pairs of strain, north and east side',
         times.note,
@@ -105,3 +100,19 @@ def read_strain(path: Path) -> StrainRecord:
     )
     pairs = values.reshape(len(values), -1, 2)
     return StrainRecord(times.seconds, pairs, str(path), times.epoch, tuple(filter(None, notes)))
+
+
+def _table(lines: list[str], source: str) -> TextTable:
+    """Return a table by its header, else its numbers in columns without names."""
+    if header_line(lines) is not None:
+        return table_of(lines, source)
+    numbers, lines = filled_lines(lines)
+    first = lines[0] if lines else ''
+    separator = next((each for each in '\t;,' if each in first), ' ')
+    split = partial(split_row, separator=separator)
+    if separator != ',':  # a comma is that of a decimal fraction
+        lines = [line.replace(',', '.') for line in lines]
+    names = split(first)
+    begin = len(names) > 1 and finite(names[1]) is None
+    columns = names if begin else [''] * len(names)
+    return TextTable(tuple(columns), numbers[begin:], lines[begin:], split, source)

@@ -49,7 +49,7 @@ def species_of_rows(
     tables = [_decoded(columns, index, given) for index in columns.table.find_all('species')]
     if columns.index_of('genus') is not None:
         pairs = zip(columns.texts_of('genus'), columns.texts_of('epithet'), strict=True)
-        tables.append([_joined(*pair) for pair in pairs])
+        tables.insert(0, [_joined(*pair) for pair in pairs])
     if not tables and (index := _column_of_names(columns)) is not None:
         tables.append(columns.texts(index))
         columns.note(f'{columns.table.columns[index]} is taken as the species, by its cells')
