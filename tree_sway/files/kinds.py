@@ -73,9 +73,11 @@ def _kind_of_table(head: str) -> str:
         table = table_of(head.splitlines()[:_ROWS], '')
         if not table.find_all('time'):
             return ''
+        moved = {found[0] for found in map(motion_of, table.columns) if found and found[2]}
+        if moved - {'displacement'}:  # as ux of a wind is one
+            return 'motion'
         components = {folded(table.columns[index]) for index in table.find_all('wind_x')}
         if table.find_all('wind_speed') or components - {'x', 'east'}:
             return 'wind'
-        has_motion = any(found[2] for found in map(motion_of, table.columns) if found)
-        return 'motion' if has_motion else ''
+        return 'motion' if moved else ''
     return ''
