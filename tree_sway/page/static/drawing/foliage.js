@@ -7,7 +7,7 @@ import { STRIDE } from "../placing.js";
 import { distance, multiply, turned } from "../quaternions.js";
 import { hangs, lookOf, numbers, seeded, shapes } from "./looks.js";
 import { leafPlace, reachOf } from "./mesh.js";
-import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
+import { drawnLeaf, leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
 const {
   /** Largest size of cards over the usual one, where few are drawn; each then shows more leaves. */
@@ -113,9 +113,8 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       if (isSpread && end[2] < 0.4 * rest[2] + 0.6 * lowest) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c]) + (BOUGH / bough.radius) * (end[c] - bough.centre[c])));
-      // Leaves within a clump are darker than those at its surface.
-      const deep = Math.min(1, distance(end, middle) / (0.6 * shoot.size));
-      const tint = (isSpread ? 0.6 + 0.3 * deep + 0.22 * Math.min(1, distance(end, bough.centre) / bough.radius) : 1) + UNEVEN * Math.sin(7 * shoot.phase + (card % 2));
+      // Leaves within a bough are darker than those at its surface.
+      const tint = (isSpread ? 0.68 + 0.44 * Math.min(1, distance(end, bough.centre) / bough.radius) : 1) + UNEVEN * Math.sin(7 * shoot.phase + card);
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
@@ -257,7 +256,7 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, (SHOOT[look.form] ?? SHOOT.usual) * look.leaf_size / mean);
+    const long = Math.max(small, (SHOOT[look.form] ?? SHOOT.usual) * drawnLeaf(look) / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
     return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };

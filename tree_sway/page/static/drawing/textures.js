@@ -7,6 +7,8 @@ import { barks, numbers, outlineOf, places, seeded } from "./looks.js";
 const {
   /** Numbers of leaves along a picture: a single leaf, then longer and longer sprays. */
   ALONG,
+  /** Length of a drawn leaf over that of a real one, so that one sees its form from afar. */
+  DRAWN,
   /** Length of a whole leaf in leaflets. */
   IN_LEAFLETS,
   /** Width over length of a leaf with leaflets. */
@@ -28,8 +30,11 @@ const {
   BARK_WIDE,
 } = /** @type {Record<string, any>} */ (numbers.pictures);
 
-/** Length of a leaf with all its leaflets [m]. @param {Look} look */
-export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form] ?? 1);
+/** Length at which a leaf or leaflet is drawn [m]. @param {Look} look */
+export const drawnLeaf = ({ has_needles: hasNeedles, leaf_size: size }) => size * (hasNeedles ? 1 : DRAWN);
+
+/** Length of a drawn leaf with all its leaflets [m]. @param {Look} look */
+export const wholeLeaf = (look) => drawnLeaf(look) * (IN_LEAFLETS[look.form] ?? 1);
 
 /** Width of a picture over its length.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} [isSpread] of small cards */
@@ -45,7 +50,7 @@ export const leafShare = ({ form }, along, isFlowering) =>
  * @param {Look} look @param {number} long length of a card [m] */
 export function leavesAlong(look, long) {
   const least = look.form in IN_LEAFLETS ? 8 : look.has_needles ? 3 : 1;
-  return ALONG.find((/** @type {number} */ along) => along >= Math.max(least, long / look.leaf_size)) ?? ALONG[ALONG.length - 1];
+  return ALONG.find((/** @type {number} */ along) => along >= Math.max(least, long / drawnLeaf(look))) ?? ALONG[ALONG.length - 1];
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
@@ -53,8 +58,7 @@ export function leavesAlong(look, long) {
  * of small cards, and its size [px] */
 export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isSpread = false, size } = {}) {
   const share = leafShare(look, along, isFlowering);
-  const hasLeaflets = look.form in IN_LEAFLETS;
-  const pixels = size ?? (along > 1 || hasLeaflets ? 512 : 128);
+  const pixels = size ?? (along > 1 ? 512 : look.form in IN_LEAFLETS ? 192 : 128);
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.8);
@@ -275,7 +279,7 @@ class Brush {
       return;
     }
     // The larger a leaflet is, the fewer there are.
-    const pairs = size * slenderness > 0.035 ? 4 : 5;
+    const pairs = size * slenderness > 0.035 ? 3 : 4;
     const long = 1.1 / pairs;
     this.line(0.98 - long, 0.02, color);
     for (let i = 0; i <= 2 * pairs; i++) {
