@@ -284,8 +284,8 @@ test("a leaf with leaflets is a picture of its own, as large as it is", () => {
 });
 
 test("a picture of a large card shows small leaves, whatever the species", () => {
-  for (const form of ["ovate", "compound", "digitate", "needles", "tufts", "fronds", "of no species"]) {
-    const look = { ...average, form, has_needles: ["needles", "tufts", "fronds"].includes(form) };
+  for (const form of ["ovate", "compound", "digitate", "needles", "bunches", "tufts", "fronds", "of no species"]) {
+    const look = { ...average, form, has_needles: ["needles", "bunches", "tufts", "fronds"].includes(form) };
     const { leaf_size: size } = look;
     for (const card of [size, 3 * size, 8 * size, 30 * size]) {
       assert.ok(card / leavesAlong(look, card) < 2 * size);

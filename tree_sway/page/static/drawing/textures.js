@@ -13,13 +13,11 @@ const {
   WITH_LEAFLETS,
   /** Width of the leaf beside a candle of flowers, over that of the picture. */
   LEAF_SHARE,
-  /** Width of a small card of short needles over that of others. */
+  /** Width of small cards of short needles over that of others. */
   TWIG,
   /** Short needles: gap between side shoots over the length of a shoot, and the least of the picture; length of a needle over the
-   * gap; how far side shoots lean from their axis, and needles [rad]; those in tufts are of conifers that shed them. */
+   * gap; how far side shoots lean from their axis, and needles [rad]; the distance of bunches. */
   NEEDLES,
-  /** Length of the part of a shoot that long needles clothe, over their length. */
-  BRUSH,
   /** Number of layers of leaves; the lowest is shaded by the others. */
   LAYERS,
   /** Length of the midrib of a leaf or leaflet, and its veins. */
@@ -34,7 +32,7 @@ export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form
 /** Width of a picture over its length.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} [isSpread] of small cards */
 export const pictureWidth = ({ form, slenderness, spray }, along, isSpread = false) =>
-  along > 1 ? spray.width * (isSpread && form === "needles" ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
+  along > 1 ? spray.width * (isSpread ? TWIG[form] ?? 1 : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
 /** Part of the width of a picture that has leaves; the flowers of a horse chestnut are beside them.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} isFlowering */
@@ -58,7 +56,6 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.8);
-  else if (look.form === "tufts") brush.tufts(along < 5 ? places.tuft : places.tufts);
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
   else brush.spray(1 / along, isSpread ? 0.65 : 0.75);
@@ -170,11 +167,11 @@ class Brush {
   /** A branchlet with side shoots clad in needles, apart from each other like fingers: dark near the axis,
    * lighter at the tips. @param {number} shoot length of needles and shoot together */
   needles(shoot) {
-    const { look: { form, twig, autumn }, random, half } = this;
-    const [gap, least, share, leaning, tilted] = NEEDLES[autumn ? "tufted" : form];
+    const { look: { form, twig }, random, half } = this;
+    const [gap, least, share, leaning, tilted, knot] = NEEDLES[form];
     const apart = Math.max(least, gap * shoot);
     const long = share * apart;
-    const wide = Math.max(0.1 * long, 0.004);
+    const wide = Math.min(0.1 * long, 0.009);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
@@ -192,7 +189,7 @@ class Brush {
           if (!isUpper) this.line(reach, 0.02 * apart + 0.003, css(twig, 0.7));
           const count = Math.max(5, ((isUpper ? 0.6 : 0.9) * reach) / wide);
           for (let i = 0; i < count; i++) {
-            const far = (i + random()) / count;
+            const far = (knot / reach) * Math.round(((i + random()) / count) * (reach / knot));
             const out = 0.5 * Math.hypot(x, y) + 0.5 * far;
             const color = this.color((isUpper ? 0.72 : 0.45) + 0.4 * out, 0.3 * far);
             const tilt = (i % 2 ? 1 : -1) * tilted * (0.6 + 0.4 * random()) * (isUpper ? 0.8 : 1);
@@ -200,36 +197,6 @@ class Brush {
           }
         });
       }
-    }
-  }
-
-  /** A shoot with long needles on every side, few enough that one sees between them from afar: dark ones
-   * below, lighter ones above. @param {number} x end of the shoot @param {number} y
-   * @param {number} heading of the shoot [rad] @param {number} long longest needle
-   * @param {number} count how many are on each side of the picture */
-  tuft(x, y, heading, long, count) {
-    const { look: { twig }, random, half } = this;
-    this.at(0, 0, Math.atan2(y, x), 1, () => this.line(Math.hypot(x, y), 0.016, css(twig, 0.8)));
-    for (const isUpper of [false, true]) {
-      for (let i = 0; i < count; i++) {
-        // Along the shoot, so that it is a brush, and no star, which would be a leaf of a maple.
-        const before = Math.min(BRUSH * long, 0.8 * x) * random();
-        const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
-        const turn = heading + (i % 2 ? 1 : -1) * (0.2 + 0.9 * random());
-        const room = (half - Math.abs(fromY)) / Math.abs(Math.sin(turn));
-        // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
-        const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
-        const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1);
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.009, color));
-      }
-    }
-  }
-
-  /** Tufts at the ends of side shoots: place, length of the needles and how many there are. @param {number[][]} ends */
-  tufts(ends) {
-    for (const [x, y, long, count] of ends) {
-      const beside = this.half * y;
-      this.tuft(x, beside, Math.atan2(0.6 * beside, 0.4), long, count);
     }
   }
 
