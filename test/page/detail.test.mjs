@@ -275,17 +275,19 @@ test("twigs of a plant in a pot hang if its shoots droop", () => {
   assert.ok(upright < 0.1, `${upright}`);
 });
 
-test("a leaf with leaflets is a picture of its own, as large as it is", () => {
+test("a leaf with leaflets is a picture of its own, about as large as it is, and a needle is exactly", () => {
   const walnut = { ...average, form: "compound", leaf_size: 0.1 };
-  assert.equal(wholeLeaf(average), average.leaf_size);
+  const drawn = wholeLeaf(average) / average.leaf_size;
+  assert.ok(drawn >= 1 && drawn < 1.5, `${drawn}`);
+  assert.equal(wholeLeaf({ ...average, has_needles: true }), average.leaf_size);
   assert.ok(wholeLeaf(walnut) > 0.3);
   assert.ok(pictureWidth(walnut, 1) > walnut.slenderness);
   assert.equal(pictureWidth(walnut, 5), walnut.spray.width);
 });
 
 test("a picture of a large card shows small leaves, whatever the species", () => {
-  for (const form of ["ovate", "compound", "digitate", "needles", "tufts", "fronds", "of no species"]) {
-    const look = { ...average, form, has_needles: ["needles", "tufts", "fronds"].includes(form) };
+  for (const form of ["ovate", "compound", "digitate", "needles", "bunches", "tufts", "fronds", "of no species"]) {
+    const look = { ...average, form, has_needles: ["needles", "bunches", "tufts", "fronds"].includes(form) };
     const { leaf_size: size } = look;
     for (const card of [size, 3 * size, 8 * size, 30 * size]) {
       assert.ok(card / leavesAlong(look, card) < 2 * size);

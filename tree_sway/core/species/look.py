@@ -43,6 +43,7 @@ FORMS = (
     'compound',
     'digitate',
     'needles',
+    'bunches',
     'fronds',
     'tufts',
 )
@@ -103,7 +104,7 @@ class Look:
     @property
     def spray(self) -> Spray:
         """Cards of a cluster of leaves, of about the same area however slender they are."""
-        is_flat = self.form in ('needles', 'fronds')
+        is_flat = self.form in ('needles', 'bunches', 'fronds')
         length = self.spray_size * (_FILLED_BY_NEEDLES if is_flat else _FILLED)
         rolls = _LEVEL if is_flat else _CROSSED
         return Spray(length / self.spray_width**0.5, self.spray_width, rolls)

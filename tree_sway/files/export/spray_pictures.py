@@ -19,7 +19,7 @@ def leaf_picture(species: str) -> bytes:
     """Return the spray of a species as PNG, cut out by its alpha; x is along the shoot."""
     path = FOLDER / f'{species}.png'
     if not path.exists():  # a species of the user's own
-        like = 'broadleaf' if look_of(species).form != 'needles' else 'conifer'
+        like = 'broadleaf' if look_of(species).form not in ('needles', 'bunches') else 'conifer'
         path = FOLDER / f'{like}.png'
     return path.read_bytes()
 

@@ -251,7 +251,7 @@ interface Look {
   bark: number[];
   twig: number[];
   bark_pattern: "furrows" | "plates" | "smooth" | "dashes" | "flakes" | "scales";
-  form: "ovate" | "pointed" | "heart" | "lobed" | "palmate" | "compound" | "digitate" | "needles" | "tufts" | "fronds";
+  form: "ovate" | "pointed" | "heart" | "lobed" | "palmate" | "compound" | "digitate" | "needles" | "bunches" | "tufts" | "fronds";
   /** Width of a leaf over its length. */
   slenderness: number;
   /** Length of a leaf or leaflet, or of a shoot with needles [m]. */

@@ -7,7 +7,7 @@ import { STRIDE } from "../placing.js";
 import { distance, multiply, turned } from "../quaternions.js";
 import { hangs, lookOf, numbers, seeded, shapes } from "./looks.js";
 import { leafPlace, reachOf } from "./mesh.js";
-import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
+import { drawnLeaf, leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
 const {
   /** Largest size of cards over the usual one, where few are drawn; each then shows more leaves. */
@@ -51,8 +51,6 @@ const {
 } = /** @type {Record<string, any>} */ (numbers.foliage);
 /** Whether a tree weeps. @param {Look} look */
 const weeps = ({ droop = 0 }) => droop > WEEPS;
-/** Whether twigs hang straight down. @param {Look} look */
-const dangles = (look) => weeps(look) || (look.is_potted && hangs(look));
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Numbers per vertex of a card. */
@@ -113,9 +111,8 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       if (isSpread && end[2] < 0.4 * rest[2] + 0.6 * lowest) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c]) + (BOUGH / bough.radius) * (end[c] - bough.centre[c])));
-      // Leaves within a clump are darker than those at its surface.
-      const deep = Math.min(1, distance(end, middle) / (0.6 * shoot.size));
-      const tint = (isSpread ? 0.6 + 0.3 * deep + 0.22 * Math.min(1, distance(end, bough.centre) / bough.radius) : 1) + UNEVEN * Math.sin(7 * shoot.phase + (card % 2));
+      // Leaves within a bough are darker than those at its surface.
+      const tint = (isSpread ? 0.68 + 0.44 * Math.min(1, distance(end, bough.centre) / bough.radius) : 1) + UNEVEN * Math.sin(7 * shoot.phase + card);
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
@@ -177,7 +174,7 @@ function leafyShoot(kind, rest, i) {
   const own = [0, 0, 0, 1];
   multiply(rest, STRIDE * carrier[i] + 4, [x, y, z, w], 0, own);
   const at = leafPlace(kind, rest, i);
-  const isHanging = dangles(lookOf(kind));
+  const isHanging = hangs(lookOf(kind));
   // Some twigs hang straight down from where they grow.
   if (isHanging) turned(own, [1, 0, 0]).forEach((each, c) => (at[c] -= 0.5 * sizes[i] * (each + Number(c > 1))));
   return { segment: carrier[i], at, frame: isHanging ? DOWN : own, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
@@ -219,10 +216,9 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   const add = (segment, along) => {
     const o = STRIDE * segment;
     const own = Array.from(rest.subarray(o + 4, o + 8));
-    // Some shoots of a weeping bough clothe its back.
-    const frame = isWeeping && shoots.length % 2 ? DOWN : own;
-    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] - (frame === DOWN && c > 1 ? 0.5 * size : 0));
-    shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency: arrays.leaf_frequency[0], share });
+    // Those of a weeping bough begin above it and clothe its back.
+    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] - (isWeeping && c > 1 ? 0.25 * size : 0));
+    shoots.push({ segment, at, frame: isWeeping ? DOWN : own, size, phase: 2.4 * shoots.length, frequency: arrays.leaf_frequency[0], share });
   };
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
@@ -231,7 +227,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     for (let segment = first[branch]; segment <= end; segment++) {
       // A cluster clothes no long shoot from its foot on.
       if (look.form === "tufts" || radius[2 * segment] > leafiest || (leafy.has(segment) ? length[segment] < LONG * size : segment === end)) continue;
-      const count = Math.ceil(length[segment] / ((isWeeping ? 0.45 : 1.5) * size));
+      const count = Math.ceil(length[segment] / ((isWeeping ? 0.7 : 1.5) * size));
       for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }
   }
@@ -257,7 +253,7 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, (SHOOT[look.form] ?? SHOOT.usual) * look.leaf_size / mean);
+    const long = Math.max(small, (SHOOT[look.form] ?? SHOOT.usual) * drawnLeaf(look) / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
     return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
@@ -294,14 +290,16 @@ function leafyTwig(look, { length, width }, random) {
   const way = unit([some(), some(), some()]);
   const far = 0.75 + 0.25 * random();
   const end = [whole * (0.42 + 0.42 * far * way[0]), 0.8 * wide * far * way[1], 0.8 * deep * wide * far * way[2]];
-  const foot = [Math.max(0, end[0] - 0.6 * Math.hypot(end[1], end[2])) * random(), 0, 0];
+  // Hanging ones are beside each other like threads of a curtain, others radiate from their shoot.
+  const apart = hangs(look) && !look.is_potted ? 0.9 : 0;
+  const foot = [Math.max(0, end[0] - 0.6 * Math.hypot(end[1], end[2])) * random(), apart * end[1], apart * end[2]];
   const along = end.map((each, c) => each - foot[c]);
   const spread = hangs(look) ? 1.4 - 1.2 * droop : look.has_needles ? 0.6 : 1.4;
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
     const far = bare + (1 - bare) * ((i + random()) / ON_TWIG) ** (hangs(look) ? 1 : 0.5);
     const away = unit(unit(along).map((each, c) => each + spread * some() + Number(c > 1 && look.form === "fronds")));
     // Leaves face outward and up, the more so the flatter the cluster is.
-    const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1 && !dangles(look))), away));
+    const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1 && !hangs(look))), away));
     const normal = cross(away, across);
     return cornersOf((u, v) => ({
       place: hanging(foot.map((each, c) => each + far * along[c] + length * ((u - 0.15) * away[c] + v * width * across[c])), BOW * length * u),

@@ -19,7 +19,7 @@ const {
   FOOT_RINGS,
   /** Places of the rings along a segment, over its length. */
   BENDS,
-  /** How far the rings of wood lie beside its axis, over their radius. */
+  /** How far the rings of wood lie beside its axis, over their radius; less on a stem. */
   CROOKED,
   /** Roots that spread from the foot of a stem. */
   ROOTS,
@@ -127,7 +127,7 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
       const flare = isStem ? Math.exp(-0.7 * above) : 0;
       const wide = (1 - share) * radiusAt(s) + share * radiusAt(s + 1);
       const ringRadius = Math.max(wide, LEAST_RADIUS * pixel) * (1 + 0.8 * flare);
-      const drift = ringRadius * CROOKED * Math.sin(0.31 * above);
+      const drift = ringRadius * (isStem ? 0.3 : 1) * CROOKED * Math.sin(0.31 * above);
       const [aside, upwards] = [Math.cos, Math.sin].map((of, c) => drift * of(0.19 * above - twist)
         + 0.5 * long * share * (1 - share) * ((1 - share) * before[c + 1] - share * after[c + 1]));
       for (let k = 0; k < corners; k++) {

@@ -264,7 +264,7 @@ void main() {
   const float least = 0.3; // of the sun: few cards for many leaves hide more of it than these would
 #else
   edge = min(1.0, 2.2 * abs(dot(flat_, back)));
-  float own = 0.6;
+  float own = 0.4;
   const float least = 0.12;
 #endif
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
@@ -278,7 +278,8 @@ void main() {
   // The far side of the crown has little sun, whatever the shadow of its few leaves lets through.
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
   float sunny = mix(least, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
-  vec3 up = sky * (0.27 + 0.8 * near) * (0.68 + 0.32 * n.z) * (0.8 + 0.2 * turnedTo);
+  // Light that other leaves have passed on is green.
+  vec3 up = sky * mix(vec3(0.3, 0.3, 0.14), vec3(1.07, 1.07, 0.85), near) * (0.62 + 0.38 * n.z) * (0.8 + 0.2 * turnedTo);
   // Light through a leaf is yellow, and is seen most against the sun.
   vec3 through = vec3(1.4, 1.6, 0.5) * max(-side * dot(flat_, light), 0.0) * (0.9 - 0.5 * turnedTo);
   vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.1 + 2.4 * max(0.8 * across + 0.2, 0.0)) + through);
@@ -328,13 +329,13 @@ void main() {
   float chance = fract(43758.5453 * sin(dot(floor(at * cells), vec2(12.9898, 78.233))));
   // Sooner in a large picture, which has many leaves, than in that of a single one.
   float points = float(textureSize(leaves, 0).x);
-  float mixed = min(1.0, 0.3 * max(0.0, log2(7e-4 * points * points * small)));
-  float least = mix(0.5, 0.06 + 0.88 * chance, mixed);
+  float mixed = min(1.0, 0.22 * max(0.0, log2(7e-4 * points * points * small)));
+  float least = mix(0.5, 0.12 + 0.5 * chance, mixed);
   float shown = edge * leaf.a;
   // The rim of a leaf covers a part of its pixel.
-  float cover = clamp(0.5 + (shown - least) / max(fwidth(shown), 0.02 + 0.6 * mixed), 0.0, 1.0);
+  float cover = clamp(0.5 + (shown - least) / max(fwidth(shown), 0.02 + 0.8 * mixed), 0.0, 1.0);
   if (cover < 0.05) discard;
-  float own = 1.0 + 0.4 * (fract(17.0 * chance) - 0.5) * mixed;
+  float own = 1.0 + 0.2 * (fract(17.0 * chance) - 0.5) * mixed;
   color = vec4(leaf.rgb * own / max(leaf.a, 0.01) * lit + veil, cover);
 #endif
 }

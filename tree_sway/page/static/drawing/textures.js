@@ -7,19 +7,19 @@ import { barks, numbers, outlineOf, places, seeded } from "./looks.js";
 const {
   /** Numbers of leaves along a picture: a single leaf, then longer and longer sprays. */
   ALONG,
+  /** Length of a drawn leaf over that of a real one, so that one sees its form from afar. */
+  DRAWN,
   /** Length of a whole leaf in leaflets. */
   IN_LEAFLETS,
   /** Width over length of a leaf with leaflets. */
   WITH_LEAFLETS,
   /** Width of the leaf beside a candle of flowers, over that of the picture. */
   LEAF_SHARE,
-  /** Width of a small card of short needles over that of others. */
+  /** Width of small cards of short needles over that of others. */
   TWIG,
   /** Short needles: gap between side shoots over the length of a shoot, and the least of the picture; length of a needle over the
-   * gap; how far side shoots lean from their axis, and needles [rad]; those in tufts are of conifers that shed them. */
+   * gap; how far side shoots lean from their axis, and needles [rad]; the distance of bunches. */
   NEEDLES,
-  /** Length of the part of a shoot that long needles clothe, over their length. */
-  BRUSH,
   /** Number of layers of leaves; the lowest is shaded by the others. */
   LAYERS,
   /** Length of the midrib of a leaf or leaflet, and its veins. */
@@ -28,13 +28,16 @@ const {
   BARK_WIDE,
 } = /** @type {Record<string, any>} */ (numbers.pictures);
 
-/** Length of a leaf with all its leaflets [m]. @param {Look} look */
-export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form] ?? 1);
+/** Length at which a leaf or leaflet is drawn [m]. @param {Look} look */
+export const drawnLeaf = ({ has_needles: hasNeedles, leaf_size: size }) => size * (hasNeedles ? 1 : DRAWN);
+
+/** Length of a drawn leaf with all its leaflets [m]. @param {Look} look */
+export const wholeLeaf = (look) => drawnLeaf(look) * (IN_LEAFLETS[look.form] ?? 1);
 
 /** Width of a picture over its length.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} [isSpread] of small cards */
 export const pictureWidth = ({ form, slenderness, spray }, along, isSpread = false) =>
-  along > 1 ? spray.width * (isSpread && form === "needles" ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
+  along > 1 ? spray.width * (isSpread ? TWIG[form] ?? 1 : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
 /** Part of the width of a picture that has leaves; the flowers of a horse chestnut are beside them.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} isFlowering */
@@ -45,7 +48,7 @@ export const leafShare = ({ form }, along, isFlowering) =>
  * @param {Look} look @param {number} long length of a card [m] */
 export function leavesAlong(look, long) {
   const least = look.form in IN_LEAFLETS ? 8 : look.has_needles ? 3 : 1;
-  return ALONG.find((/** @type {number} */ along) => along >= Math.max(least, long / look.leaf_size)) ?? ALONG[ALONG.length - 1];
+  return ALONG.find((/** @type {number} */ along) => along >= Math.max(least, long / drawnLeaf(look))) ?? ALONG[ALONG.length - 1];
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
@@ -53,12 +56,10 @@ export function leavesAlong(look, long) {
  * of small cards, and its size [px] */
 export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isSpread = false, size } = {}) {
   const share = leafShare(look, along, isFlowering);
-  const hasLeaflets = look.form in IN_LEAFLETS;
-  const pixels = size ?? (along > 1 || hasLeaflets ? 512 : 128);
+  const pixels = size ?? (along > 1 ? 512 : look.form in IN_LEAFLETS ? 192 : 128);
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.8);
-  else if (look.form === "tufts") brush.tufts(along < 5 ? places.tuft : places.tufts);
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
   else brush.spray(1 / along, isSpread ? 0.65 : 0.75);
@@ -170,11 +171,11 @@ class Brush {
   /** A branchlet with side shoots clad in needles, apart from each other like fingers: dark near the axis,
    * lighter at the tips. @param {number} shoot length of needles and shoot together */
   needles(shoot) {
-    const { look: { form, twig, autumn }, random, half } = this;
-    const [gap, least, share, leaning, tilted] = NEEDLES[autumn ? "tufted" : form];
+    const { look: { form, twig }, random, half } = this;
+    const [gap, least, share, leaning, tilted, knot] = NEEDLES[form];
     const apart = Math.max(least, gap * shoot);
     const long = share * apart;
-    const wide = Math.max(0.1 * long, 0.004);
+    const wide = Math.min(0.1 * long, 0.009);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
@@ -192,7 +193,7 @@ class Brush {
           if (!isUpper) this.line(reach, 0.02 * apart + 0.003, css(twig, 0.7));
           const count = Math.max(5, ((isUpper ? 0.6 : 0.9) * reach) / wide);
           for (let i = 0; i < count; i++) {
-            const far = (i + random()) / count;
+            const far = (knot / reach) * Math.round(((i + random()) / count) * (reach / knot));
             const out = 0.5 * Math.hypot(x, y) + 0.5 * far;
             const color = this.color((isUpper ? 0.72 : 0.45) + 0.4 * out, 0.3 * far);
             const tilt = (i % 2 ? 1 : -1) * tilted * (0.6 + 0.4 * random()) * (isUpper ? 0.8 : 1);
@@ -200,36 +201,6 @@ class Brush {
           }
         });
       }
-    }
-  }
-
-  /** A shoot with long needles on every side, few enough that one sees between them from afar: dark ones
-   * below, lighter ones above. @param {number} x end of the shoot @param {number} y
-   * @param {number} heading of the shoot [rad] @param {number} long longest needle
-   * @param {number} count how many are on each side of the picture */
-  tuft(x, y, heading, long, count) {
-    const { look: { twig }, random, half } = this;
-    this.at(0, 0, Math.atan2(y, x), 1, () => this.line(Math.hypot(x, y), 0.016, css(twig, 0.8)));
-    for (const isUpper of [false, true]) {
-      for (let i = 0; i < count; i++) {
-        // Along the shoot, so that it is a brush, and no star, which would be a leaf of a maple.
-        const before = Math.min(BRUSH * long, 0.8 * x) * random();
-        const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
-        const turn = heading + (i % 2 ? 1 : -1) * (0.2 + 0.9 * random());
-        const room = (half - Math.abs(fromY)) / Math.abs(Math.sin(turn));
-        // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
-        const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
-        const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1);
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.009, color));
-      }
-    }
-  }
-
-  /** Tufts at the ends of side shoots: place, length of the needles and how many there are. @param {number[][]} ends */
-  tufts(ends) {
-    for (const [x, y, long, count] of ends) {
-      const beside = this.half * y;
-      this.tuft(x, beside, Math.atan2(0.6 * beside, 0.4), long, count);
     }
   }
 
@@ -275,7 +246,7 @@ class Brush {
       return;
     }
     // The larger a leaflet is, the fewer there are.
-    const pairs = size * slenderness > 0.035 ? 4 : 5;
+    const pairs = size * slenderness > 0.035 ? 3 : 4;
     const long = 1.1 / pairs;
     this.line(0.98 - long, 0.02, color);
     for (let i = 0; i <= 2 * pairs; i++) {
