@@ -64,7 +64,7 @@ def flat(
     Yield name and text of each value in an object, with the names of its groups before it.
 
     Three or four numbers in a list are those of axes. Objects in a list have values beside their
-    names, as in Frost; one alone counts too, and with ``lists`` all do.
+    names, as those of Frost and the IMS; one alone counts too, and with ``lists`` all do.
     """
     for name, each in node.items():
         whole = f'{before}{name}'
@@ -78,8 +78,8 @@ def flat(
                 yield from ((f'{whole}.{axis}', text_of(item)) for axis, item in axes)
             for item in map(object_of, each if depth < DEEPEST else ()):
                 if 'value' in item:
-                    inside = f'{next(iter(item.values()))}.'
-                    yield from flat(item, inside, depth + 1, lists=lists)
+                    own = item.get('name', next(iter(item.values())))
+                    yield from flat(item, f'{own}.', depth + 1, lists=lists)
                 elif lists or len(each) == 1:
                     yield from flat(item, f'{whole}.', depth + 1, lists=lists)
         else:

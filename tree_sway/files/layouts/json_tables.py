@@ -221,7 +221,7 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
     system = {'units': text_of(units['*'])} if units.get('*') else {}
     records = list[dict[str, str]]()
     several: dict[str, str] = {}
-    for number, each in enumerate(map(_by_name, node), start=1):
+    for number, each in enumerate(node, start=1):
         record: dict[str, str] = {}
         for name, text in flat(each):
             if record.get(name, text) != text and is_wind(name.removesuffix('.value')):
@@ -234,18 +234,6 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
     titles = [text_of(units.get(f'#{name}', name)) for name in names]
     table = table_of_cells(titles, rows, source, units=beside)
     return widened(replace(table, note=note_of_several(several)))
-
-
-def _by_name(record: dict[str, Any]) -> dict[str, Any]:
-    """Return a record whose lists of names and values are values by name, as those of the IMS."""
-    found: dict[str, Any] = {}
-    for key, each in record.items():
-        parts = [*map(object_of, list_of(each))]
-        named = {
-            text_of(part['name']): part['value'] for part in parts if {'name', 'value'} <= {*part}
-        }
-        found |= named if any(map(is_wind, named)) else {key: each}
-    return found
 
 
 def _series(node: Any, before: str, units: Cells) -> Iterator[Value]:
