@@ -13,6 +13,8 @@ from tree_sway.errors import FormatError
 from tree_sway.files.column_names import is_named
 
 DEEPEST = 12
+Record = dict[str, Any]
+"""An object of JSON."""
 _DECIMAL = re.compile(r'-?\d+,\d+')
 
 
@@ -41,7 +43,7 @@ def cell_of(value: Any) -> str:
     return str(value).replace('\n', ' ') if is_one else ''
 
 
-def object_of(value: Any) -> dict[str, Any]:
+def object_of(value: Any) -> Record:
     """Return an object of JSON; an empty one in place of any other value."""
     return value if isinstance(value, dict) else {}
 
@@ -49,6 +51,17 @@ def object_of(value: Any) -> dict[str, Any]:
 def list_of(value: Any) -> list[Any]:
     """Return a list of JSON; an empty one in place of any other value."""
     return value if isinstance(value, list) else []
+
+
+def value_at(document: Any, *steps: str | int) -> Any:
+    """Return the value at names and places within a document; None where there is none."""
+    for step in steps:
+        is_inside = isinstance(document, list if isinstance(step, int) else dict)
+        try:
+            document = document[step] if is_inside else None
+        except LookupError:
+            return None
+    return document
 
 
 def text_of(value: Any) -> str:

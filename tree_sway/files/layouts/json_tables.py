@@ -27,6 +27,7 @@ from tree_sway.files.json_values import (
     flat,
     list_of,
     object_of,
+    Record,
     text_of,
     unit_beside,
 )
@@ -92,9 +93,9 @@ def _units_in(node: Any, *, is_inside: bool, depth: int = 0) -> Iterator[tuple[s
             yield from _units_in(each, is_inside=inside, depth=depth + 1)
 
 
-def _of_tempest(messages: list[Any]) -> list[dict[str, Any]]:
+def _of_tempest(messages: list[Any]) -> list[Record]:
     """Return the wind of a Tempest's messages of the most common type; empty for others."""
-    of_type: dict[str, list[dict[str, Any]]] = {}
+    of_type: dict[str, list[Record]] = {}
     for message in messages:
         if found := tempest_values(message):
             of_type.setdefault(message['type'], []).extend(found)
@@ -110,11 +111,10 @@ def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
     ]
     there = {name for _, _, name, _ in found}
     for speed, angle, is_from_bow in SIGNALK_PAIRS:
-        if {speed, angle} <= there and not is_from_bow:
-            names = {speed: 'wind_speed', angle: 'wind_direction'}
-            units = {'wind_speed': 'm/s', 'wind_direction': 'rad'}
-            wind = [(*each[:2], names[each[2]], each[3]) for each in found if each[2] in names]
-            return wide_table(wind, source, 'time', units)
+        names = {speed: 'wind_speed [m/s]', angle: 'wind_direction [rad]'}
+        if names.keys() <= there and not is_from_bow:
+            wind = ((*at, names[name], value) for *at, name, value in found if name in names)
+            return wide_table(wind, source, 'time')
     if found:
         raise FormatError(
             f'no true wind among the paths {", ".join(sorted(there)[:8])}',
@@ -150,7 +150,7 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             yield _records(columns, units | own, source)
 
 
-def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
+def _samples(messages: list[Any]) -> Iterator[Record]:
     """
     Yield the samples of messages with a time and a list of samples each, at even times.
 
@@ -177,7 +177,7 @@ def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
             yield {clock: start + number * (end - start) / len(samples), batch: sample}
 
 
-def _said_units(node: dict[str, Any]) -> Cells:
+def _said_units(node: Record) -> Cells:
     """System of units of weather.com's history and Dark Sky, or titles of columns behind #."""
     system = object_of(node.get('metadata', node.get('flags'))).get('units')
     channel = object_of(node.get('channel'))  # ThingSpeak's names of its fields
@@ -185,7 +185,7 @@ def _said_units(node: dict[str, Any]) -> Cells:
     return {'*': system} if isinstance(system, str) else titles
 
 
-def _rows(node: dict[str, Any], units: Cells) -> Iterator[dict[str, Any]]:
+def _rows(node: Record, units: Cells) -> Iterator[Record]:
     """
     Yield records of a list of rows beside a list of its names, and note the units beside these.
 
@@ -216,7 +216,7 @@ def _words(value: Any) -> list[Any]:
     return value.split(',') if isinstance(value, str) and ',' in value else list_of(value)
 
 
-def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
+def _records(node: list[Record], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
     system = {'units': text_of(units['*'])} if units.get('*') else {}
     records = list[dict[str, str]]()
@@ -290,10 +290,10 @@ def _pairs(listed: Any) -> list[tuple[str, Any]]:
     return found
 
 
-def _states(node: list[Any]) -> Iterator[dict[str, Any]]:
+def _states(node: list[Any]) -> Iterator[Record]:
     """Yield the states of Home Assistant's lists; only the first of each may name its entity."""
     for states in node if all(map(list_of, node)) else ():
-        known: dict[str, Any] = {}
+        known: Record = {}
         for state in map(object_of, states):
             known = known | {'last_changed': state.get('last_updated')} | state
             if 'state' in state:

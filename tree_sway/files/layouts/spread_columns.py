@@ -13,12 +13,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from tree_sway.files.column_names import is_named
-from tree_sway.files.json_values import DEEPEST, list_of, object_of, text_of
+from tree_sway.files.json_values import DEEPEST, list_of, object_of, Record, text_of
 
 _OF_QUANTITY = ('data', 'values')
 
 
-def spread_rows(node: Any, units: dict[str, str]) -> list[dict[str, Any]]:
+def spread_rows(node: Any, units: dict[str, str]) -> list[Record]:
     """
     Return records of the columns as long as that of the time, wherever they are in a node.
 
