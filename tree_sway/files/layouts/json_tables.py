@@ -113,7 +113,7 @@ def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
     for speed, angle, is_from_bow in SIGNALK_PAIRS:
         names = {speed: 'wind_speed [m/s]', angle: 'wind_direction [rad]'}
         if names.keys() <= there and not is_from_bow:
-            wind = ((*at, names[name], value) for *at, name, value in found if name in names)
+            wind = [(*each[:2], names[each[2]], each[3]) for each in found if each[2] in names]
             return wide_table(wind, source, 'time')
     if found:
         raise FormatError(

@@ -25,10 +25,7 @@ def spread_rows(node: Any, units: dict[str, str]) -> list[Record]:
     There are none without two such columns. Their units are noted.
     """
     columns = dict(_lists(node, '', units))
-    clock = next((name for name in columns if is_named(name, 'time')), None)
-    if clock is None:
-        return []
-    size = len(columns[clock])
+    size = next((len(values) for name, values in columns.items() if is_named(name, 'time')), 0)
     alike = {name: values for name, values in columns.items() if len(values) == size}
     rows = zip(*alike.values(), strict=True) if len(alike) > 1 else ()
     return [dict(zip(alike, row, strict=True)) for row in rows]
