@@ -17,9 +17,8 @@ from dataclasses import replace
 import re
 from typing import Any
 
-from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import folded, is_named, SENDERS
+from tree_sway.files.column_names import folded, is_named
 from tree_sway.files.json_values import text_of
 from tree_sway.files.row_times import time_columns
 from tree_sway.files.table_file import TextTable
@@ -85,6 +84,8 @@ def widened(table: TextTable) -> TextTable:
         return table
     units: dict[str, str] = {}
     clock, value = (each[0] for each in wanted)
+    for rows in table.rows_by(name).values():
+        short.part(rows).refuse_several()
     found = time_columns(table)
     parts, form = found[:2] if found and found[1] else ([clock], '{0}')  # a date may be apart
     values = _values(short, (*parts, name, value), form, units)
@@ -109,10 +110,7 @@ def _values(
 ) -> Iterator[Value]:
     """Yield the values of a long table, whose times have a form, and note their units."""
     names = table.columns
-    senders = [i for i, name in enumerate(names) if folded(name) in SENDERS[:-1]]
-    senders = [each for each in senders if each not in wanted]
     units_at = [i for i, name in enumerate(names) if folded(name).startswith('unit')]
-    sender_of: dict[str, str] = {}
     for line, text in zip(table.numbers, table.texts, strict=True):
         cells = table.split(text)
         # There is a header above each of several tables.
@@ -120,14 +118,6 @@ def _values(
             continue
         *clock, name, value = (cells[each] for each in wanted)
         time = form.format(*clock)
-        sender = ' '.join(cells[each] for each in senders)
-        first = sender_of.setdefault(name, sender)
-        if sender != first:
-            raise FormatError(
-                f'rows of 2 instruments: {first}, {sender}',
-                where=f'{table.source}:{line}',
-                cure='write a table for each',
-            )
         if value not in _NO_STATE:
             units.setdefault(name, cells[units_at[0]] if units_at else '')
             yield line, time, name, value

@@ -106,10 +106,7 @@ def _by_sensor(table: TextTable) -> list[TextTable]:
     """Return the rows of each sensor of motion, where a column names it, as tables of files."""
     moves = {quantity: words for quantity, words in FILES_OF.items() if quantity}
     for index, column in enumerate(table.columns):
-        rows: dict[str, list[int]] = {}
-        names = table.cells(index, table.rows) if folded(column) in SENDERS else ()
-        for row, name in enumerate(names):
-            rows.setdefault(name, []).append(row)
+        rows = table.rows_by(index) if folded(column) in SENDERS else {}
         told = [each for each in rows if any(w.search(folded(each)) for w in moves.values())]
         if len(told) > 1 and min(len(rows[each]) for each in told) > 1:
             return [table.part(rows[each], f'/{each}') for each in sorted(told)]
