@@ -89,17 +89,25 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     before = start[tree.branch_first[:-1]][tree.branch_of_segment]
     way = np.column_stack([start - before, end - before])
     picture_height = min(BARK_HEIGHT, 0.12 * tree.height)
-    texture = np.empty((*rings.shape[:3], 2))
-    texture[..., 0] = 1.0 - np.abs(1.0 - angle / np.pi)
-    texture[..., 1] = (way / picture_height)[:, :, None]
-    i = np.arange(SIDES)
-    j = (i + 1) % SIDES
-    fan = np.arange(1, SIDES - 1)
-    around_it = np.column_stack([i, j, j + SIDES, i, j + SIDES, i + SIDES]).reshape(-1, 3)
-    far_end = np.column_stack([0 * fan, fan, fan + 1]) + SIDES
-    of_cone = np.vstack([around_it, far_end[:, [0, 2, 1]] - SIDES, far_end])
+    across = 1.0 - np.abs(1.0 - angle / np.pi)
+    along = way[:, :, None] / picture_height
+    texture = np.stack(np.broadcast_arrays(across, along), axis=-1)
     normals = np.tile(outward, (1, 2, 1))  # of both rings
-    return _mesh_of_copies(rings, normals, texture, np.arange(tree.n_segments), of_cone)
+    segment = np.arange(tree.n_segments)
+    return _mesh_of_copies(rings, normals, texture, segment, _cone())
+
+
+def _cone() -> Ints:
+    """Triangles of a cone, (t, 3), between its near ring and its far one, and of its ends."""
+    near = np.arange(SIDES)
+    after = np.roll(near, -1)
+    far = near + SIDES
+    far_after = after + SIDES
+    around = np.column_stack([near, after, far_after, near, far_after, far])
+    fan = np.arange(1, SIDES - 1)
+    near_end = np.column_stack([0 * fan, fan + 1, fan])
+    far_end = near_end[:, [0, 2, 1]] + SIDES
+    return np.vstack([around.reshape(-1, 3), near_end, far_end])
 
 
 def _mesh_of_copies(
@@ -149,7 +157,8 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     foot = tree.start[is_root, 2]
     # Not of length 1: that would turn at once in the middle, as light and shade meet at an edge.
     away = centre - _means(centre, number)[number]
-    away /= np.maximum(np.sqrt(_means(away**2, number)), 1e-9)[number]
+    deviation = np.sqrt(_means(away**2, number))
+    away /= np.maximum(deviation, 1e-9)[number]
     away[:, 2] = _UPRIGHT * away[:, 2] + _SKYWARD
     rotation = Rotation.from_quat(poses[segment, 3:])
     outward = rotation.inv().apply(away)[:, None]
@@ -158,7 +167,7 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     # Viewers turn the normals of a back: the front of each card is outside.
     is_back = (own * outward).sum(axis=(1, 2)) < 0.0
     points[is_back] = points[is_back, ::-1]
-    own = np.where(is_back[:, None, None], -own[:, ::-1], own)
+    own[is_back] = -own[is_back, ::-1]
     normals = _unit(_FLAT * own + outward)
     lowest = corners[..., 2].min(axis=1)
     is_above = lowest >= foot[number]
@@ -221,9 +230,10 @@ def _cards(leaves: LeafClusters, spray: Spray, card: int) -> tuple[Floats, Float
     corner = long[..., None] * _turned(around, flat)
     corner[..., 0] -= 0.5 * leaves.size[:, None]
     corner[..., 2] -= _BOW * long * u
-    points = _turned(turns, corner) + leaves.offset[:, None]
-    normal = _unit(np.column_stack([0.3 * u, 1.2 * v, np.ones(4)]))
-    return points, _turned(turns * around, normal)
+    points = _turned(turns, corner)
+    points += leaves.offset[:, None]
+    bent = np.column_stack([0.3 * u, 1.2 * v, np.ones(4)])
+    return points, _turned(turns * around, _unit(bent))
 
 
 def _turned(rotations: Rotation, vectors: Floats) -> Floats:
