@@ -143,9 +143,9 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
         if rows := list(_rows(node, own)):
             yield _records(rows, units | own, source)
         for name, each in node.items():
-            beside = object_of(node.get('units')) or _said_units(node) or units
-            own_units = units | object_of(node.get(f'{name}_units', beside))
-            yield from _tables(each, own_units, source, depth + 1)
+            beside = object_of(node.get('units')) or _said_units(node)
+            own_units = object_of(node.get(f'{name}_units', beside))
+            yield from _tables(each, units | own_units, source, depth + 1)
         if columns := spread_rows(node, own):  # after those of a part of it
             yield _records(columns, units | own, source)
 
@@ -219,10 +219,10 @@ def _words(value: Any) -> list[Any]:
 def _records(node: list[Record], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
     system = {'units': text_of(units['*'])} if units.get('*') else {}
-    records = list[dict[str, str]]()
-    several: dict[str, str] = {}
+    records = list[Cells]()
+    several: Cells = {}
     for number, each in enumerate(node, start=1):
-        record: dict[str, str] = {}
+        record: Cells = {}
         for name, text in flat(each):
             if record.get(name, text) != text and is_wind(name.removesuffix('.value')):
                 several[name] = f'record {number}'
@@ -283,10 +283,11 @@ def _pairs(listed: Any) -> list[tuple[str, Any]]:
             parts = sorted(each, key=lambda part: not _CLOCK.match(cell_of(part)))
         elif not values:
             return []
-        clock = cell_of(next((part for part in parts if _CLOCK.match(cell_of(part))), None))
+        clock = next(filter(_CLOCK.match, map(cell_of, parts)), '')
         if not clock:
             return []
-        found.append((clock.partition('/P')[0], parts[-1]))
+        begin = clock.partition('/P')[0]
+        found.append((begin, parts[-1]))
     return found
 
 
