@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from tree_sway.files.column_names import unit_in_name as unit_in_name
     from tree_sway.files.json_values import list_of as list_of
     from tree_sway.files.json_values import object_of as object_of
-    from tree_sway.files.json_values import value_at as value_at
     from tree_sway.files.layouts.monitor import pairs_of as pairs_of
     from tree_sway.files.paths import is_file as is_file
     from tree_sway.files.paths import path_of as path_of

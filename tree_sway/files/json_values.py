@@ -53,17 +53,6 @@ def list_of(value: Any) -> list[Any]:
     return value if isinstance(value, list) else []
 
 
-def value_at(document: Any, *steps: str | int) -> Any:
-    """Return the value at names and places within a document; None where there is none."""
-    for step in steps:
-        is_inside = isinstance(document, list if isinstance(step, int) else dict)
-        try:
-            document = document[step] if is_inside else None
-        except LookupError:
-            return None
-    return document
-
-
 def text_of(value: Any) -> str:
     """Return a value as a cell with a decimal point; empty for true and false."""
     text = '' if isinstance(value, bool) else cell_of(value)

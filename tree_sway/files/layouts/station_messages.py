@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from tree_sway.files.json_values import list_of, object_of, Record, value_at
+from tree_sway.files.json_values import list_of, object_of, Record
 from tree_sway.tables import table_beside
 
 _TYPES = {each['type']: each for each in table_beside(__file__, 'station_messages.csv')}
@@ -37,7 +37,7 @@ class PathValue(NamedTuple):
 
 def tempest_values(message: Any) -> list[Record]:
     """Return the times and winds of a Tempest's message by name; none of any other message."""
-    kind = value_at(message, 'type')
+    kind = object_of(message).get('type')
     places = _TYPES.get(kind) if isinstance(kind, str) else None
     if places is None:
         return []
@@ -48,7 +48,7 @@ def tempest_values(message: Any) -> list[Record]:
 
 def signalk_values(message: Any) -> Iterator[PathValue]:
     """Yield the values of a delta; nothing of any other message."""
-    for update in map(object_of, list_of(value_at(message, 'updates'))):
+    for update in map(object_of, list_of(object_of(message).get('updates'))):
         for each in map(object_of, list_of(update.get('values'))):
             if isinstance(each.get('path'), str):
                 source, time = (str(update.get(name, '')) for name in ('$source', 'timestamp'))

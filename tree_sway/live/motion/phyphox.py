@@ -23,10 +23,10 @@ from typing import Any
 import aiohttp
 import numpy as np
 
-from tree_sway.files import list_of, object_of, value_at
+from tree_sway.files import list_of, object_of
 from tree_sway.files.wind import number, Refusal
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
-from tree_sway.live.readers.json_path import parse_json
+from tree_sway.live.readers.json_path import parse_json, value_at
 from tree_sway.live.transports.http_poll import document_of
 from tree_sway.live.transports.link import Link
 from tree_sway.live.transports.loop_transport import LoopTransport
