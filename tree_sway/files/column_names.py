@@ -116,6 +116,10 @@ _WORD_ENDS = re.compile(r'[\s_]+|\.(?=\D)|(?<=[a-z])(?=[A-Z][a-z]{2})')
 _SPAN = re.compile(r'\d+(minutes?|mins?|mn|hours?|hr|m|(?=\D|$))')
 """Number, height or length of time in a name."""
 
+STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
+"""Name of a station before that of a quantity of the wind."""
+WIND = ('wind_speed', 'wind_direction', 'gust')
+
 _ALL_NAMES = frozenset(name for names in _NAMES.values() for name in names)
 
 
@@ -184,6 +188,12 @@ def rank_of(column: str, quantity: str) -> int | None:
 def is_named(column: str, *quantities: str) -> bool:
     """Whether a column's name is one of those of some quantities, as by `rank_of`."""
     return any(rank_of(column, each) is not None for each in quantities)
+
+
+def is_wind(name: str) -> bool:
+    """Whether a text is the name of a quantity of the wind, maybe behind that of a station."""
+    plain = STATION.sub('', name, count=1)
+    return is_named(plain, *WIND)
 
 
 def _roles(name: str) -> str:

@@ -10,7 +10,7 @@ import re
 from typing import Any
 
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import is_named
+from tree_sway.files.column_names import is_named, is_wind
 
 DEEPEST = 12
 Record = dict[str, Any]
@@ -80,7 +80,8 @@ def flat(
                 yield from ((f'{whole}.{axis}', text_of(item)) for axis, item in axes)
             for item in map(object_of, each if depth < DEEPEST else ()):
                 if 'value' in item:
-                    own = item.get('name', next(iter(item.values())))
+                    first = next(iter(item.values()))
+                    own = item['name'] if is_wind(cell_of(item.get('name'))) else first
                     yield from flat(item, f'{own}.', depth + 1, lists=lists)
                 elif lists or len(each) == 1:
                     yield from flat(item, f'{whole}.', depth + 1, lists=lists)

@@ -19,7 +19,7 @@ from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import is_named, unit_known
+from tree_sway.files.column_names import is_named, is_wind, unit_known
 from tree_sway.files.json_values import (
     cell_of,
     DEEPEST,
@@ -33,7 +33,6 @@ from tree_sway.files.json_values import (
 )
 from tree_sway.files.layouts.layout import begins, Layout
 from tree_sway.files.layouts.long import (
-    is_wind,
     note_of_several,
     unit_for,
     Value,
@@ -65,7 +64,8 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
     units = dict(_units_in(document, is_inside=False))
-    tables = [deltas] if deltas else list(_tables(told or document, units, source, 0))
+    searched = told or document
+    tables = [deltas] if deltas else list(_tables(searched, units, source, 0))
     # One with a wind before a longer one of another sensor.
     winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
     if not tables:
@@ -242,7 +242,8 @@ def _series(node: Any, before: str, units: Cells) -> Iterator[Value]:
 
     Their names are those of the lists, or texts beside these, as at Prometheus and SensorThings.
     """
-    own_names = node.items() if isinstance(node, dict) else (('', each) for each in list_of(node))
+    unnamed = (('', each) for each in list_of(node))
+    own_names = node.items() if isinstance(node, dict) else unnamed
     for own, each in own_names:
         inside = object_of(each)
         pairs = [] if any(map(is_wind, inside)) else _listed(each)

@@ -14,17 +14,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-import re
 from typing import Any
 
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import folded, is_named
+from tree_sway.files.column_names import folded, is_named, is_wind, STATION, WIND
 from tree_sway.files.json_values import text_of
 from tree_sway.files.row_times import time_columns
 from tree_sway.files.table_file import TextTable
 
-_STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
-WIND = ('wind_speed', 'wind_direction', 'gust')
 _LOOKED_AT = 200
 _NO_STATE = ('unavailable', 'unknown', '')
 Value = tuple[int, str, str, str]
@@ -57,7 +54,7 @@ def wide_table(
         newest |= by_time[time]
         rows.append([time, *newest.values()])
     # sensor.garden_wind_speed is wind_speed, if no other sensor is called so.
-    short = [_STATION.sub('', name, count=1) for name in names]
+    short = [STATION.sub('', name, count=1) for name in names]
     columns = short if len({*short}) == len(short) else names
     numbers = [lines[time] for time in sorted(by_time)]
     units = [(unit_of or {}).get(name, '') for name in names]
@@ -90,12 +87,6 @@ def widened(table: TextTable) -> TextTable:
     parts, form = found[:2] if found and found[1] else ([clock], '{0}')  # a date may be apart
     values = _values(short, (*parts, name, value), form, units)
     return wide_table(values, table.source, table.columns[clock], units)
-
-
-def is_wind(name: str) -> bool:
-    """Whether a text is the name of a quantity of the wind, maybe behind that of a station."""
-    plain = _STATION.sub('', name, count=1)
-    return is_named(plain, *WIND)
 
 
 def unit_for(name: str, units: Mapping[str, Any]) -> str:
