@@ -180,8 +180,8 @@ def rank_of(column: str, quantity: str) -> int | None:
         if known in found or _glued_unit(inner, known, kind) or _is_cut(column, known):
             return rank
     pattern = _PATTERNS.get(quantity)
-    forms = (*found, *map(_roles, found))
-    is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, forms)))
+    forms = filter(None, (*found, *map(_roles, found)))
+    is_like = pattern is not None and any(map(pattern.fullmatch, forms))
     return len(_NAMES[quantity]) if is_like else None
 
 
@@ -255,7 +255,8 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
     """
     if len(name) > _LONGEST_NAME:  # a header without end
         return '', ''
-    words = _WORD_ENDS.sub('_', name.strip()).lower().split('_')
+    parted = _WORD_ENDS.sub('_', name.strip())
+    words = parted.lower().split('_')
     whole = folded(name)
     found = '', ''
     for end in range(len(words), 0, -1):

@@ -126,7 +126,8 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
             break
         words.append([_unit_below(cell) for cell in cells])
     split = map(table.split, table.above)
-    above = [[*map(_unit_below, row)] for row in split if len(row) == len(table.columns)]
+    whole = (row for row in split if len(row) == len(table.columns))
+    above = [[*map(_unit_below, row)] for row in whole]
     rows = [row for row in (*words, *above) if _are_units(table, row)]
     if not rows:
         return replace(table, units=units_above(table, table.above))
@@ -149,7 +150,8 @@ def units_above(table: TextTable, above: Sequence[str]) -> tuple[str, ...]:
     def unit_of(column: str) -> str:
         kinds = [COLUMNS[each]['unit'] for each in HEADER if is_named(column, each)]
         parts = (part for line in said if column in line for part in line if part != column)
-        return next((part for part in parts if any(unit_known(k, part) for k in kinds)), '')
+        known = (part for part in parts if any(unit_known(kind, part) for kind in kinds))
+        return next(known, '')
 
     return tuple(map(unit_of, table.columns))
 
