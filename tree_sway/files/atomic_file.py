@@ -18,9 +18,7 @@ _CURE = 'give an existing folder that you may write to, with room for the file'
 
 def refuse_unwritable(path: str | Path) -> None:
     """Raise a `FormatError` for a file that `whole_file` cannot write, before work for it."""
-    target = path_of(path).resolve()
-    if target.is_dir():
-        raise FormatError('a folder', where=str(path), cure='name a file to write')
+    target = _target(path)
     why = ''
     if not target.parent.is_dir():
         why = 'no such folder'
@@ -28,6 +26,14 @@ def refuse_unwritable(path: str | Path) -> None:
         why = 'no permission'
     if why:
         raise FormatError(f'cannot be written: {why}', where=str(path), cure=_CURE)
+
+
+def _target(path: str | Path) -> Path:
+    """Return the file that a path leads to; a `FormatError` for a folder."""
+    target = path_of(path).resolve()
+    if target.is_dir():
+        raise FormatError('a folder', where=str(path), cure='name a file to write')
+    return target
 
 
 @contextmanager
@@ -50,11 +56,9 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     a pipe is written to directly. Raises a `FormatError` if the file cannot be written, or an
     `OSError` ended the block.
     """
-    target = path_of(path).resolve()
+    target = _target(path)
     with refusing(path):
         if target.exists() and not target.is_file():
-            if target.is_dir():
-                raise FormatError('a folder', where=str(path), cure='name a file to write')
             yield target
             return
         # The name of a temporary file is short, so that a long name of the target still fits.

@@ -116,6 +116,10 @@ _WORD_ENDS = re.compile(r'[\s_]+|\.(?=\D)|(?<=[a-z])(?=[A-Z][a-z]{2})')
 _SPAN = re.compile(r'\d+(minutes?|mins?|mn|hours?|hr|m|(?=\D|$))')
 """Number, height or length of time in a name."""
 
+STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
+"""Name of a station before that of a quantity of the wind."""
+WIND = ('wind_speed', 'wind_direction', 'gust')
+
 _ALL_NAMES = frozenset(name for names in _NAMES.values() for name in names)
 
 
@@ -176,14 +180,20 @@ def rank_of(column: str, quantity: str) -> int | None:
         if known in found or _glued_unit(inner, known, kind) or _is_cut(column, known):
             return rank
     pattern = _PATTERNS.get(quantity)
-    forms = (*found, *map(_roles, found))
-    is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, forms)))
+    forms = filter(None, (*found, *map(_roles, found)))
+    is_like = pattern is not None and any(map(pattern.fullmatch, forms))
     return len(_NAMES[quantity]) if is_like else None
 
 
 def is_named(column: str, *quantities: str) -> bool:
     """Whether a column's name is one of those of some quantities, as by `rank_of`."""
     return any(rank_of(column, each) is not None for each in quantities)
+
+
+def is_wind(name: str) -> bool:
+    """Whether a text is the name of a quantity of the wind, maybe behind that of a station."""
+    plain = STATION.sub('', name, count=1)
+    return is_named(plain, *WIND)
 
 
 def _roles(name: str) -> str:
@@ -245,7 +255,8 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
     """
     if len(name) > _LONGEST_NAME:  # a header without end
         return '', ''
-    words = _WORD_ENDS.sub('_', name.strip()).lower().split('_')
+    parted = _WORD_ENDS.sub('_', name.strip())
+    words = parted.lower().split('_')
     whole = folded(name)
     found = '', ''
     for end in range(len(words), 0, -1):

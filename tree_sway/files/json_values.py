@@ -10,9 +10,11 @@ import re
 from typing import Any
 
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import is_named
+from tree_sway.files.column_names import is_named, is_wind
 
 DEEPEST = 12
+Record = dict[str, Any]
+"""An object of JSON."""
 _DECIMAL = re.compile(r'-?\d+,\d+')
 
 
@@ -41,7 +43,7 @@ def cell_of(value: Any) -> str:
     return str(value).replace('\n', ' ') if is_one else ''
 
 
-def object_of(value: Any) -> dict[str, Any]:
+def object_of(value: Any) -> Record:
     """Return an object of JSON; an empty one in place of any other value."""
     return value if isinstance(value, dict) else {}
 
@@ -64,7 +66,7 @@ def flat(
     Yield name and text of each value in an object, with the names of its groups before it.
 
     Three or four numbers in a list are those of axes. Objects in a list have values beside their
-    names, as in Frost; one alone counts too, and with ``lists`` all do.
+    names, as those of Frost and the IMS; one alone counts too, and with ``lists`` all do.
     """
     for name, each in node.items():
         whole = f'{before}{name}'
@@ -78,8 +80,9 @@ def flat(
                 yield from ((f'{whole}.{axis}', text_of(item)) for axis, item in axes)
             for item in map(object_of, each if depth < DEEPEST else ()):
                 if 'value' in item:
-                    inside = f'{next(iter(item.values()))}.'
-                    yield from flat(item, inside, depth + 1, lists=lists)
+                    first = next(iter(item.values()))
+                    own = item['name'] if is_wind(cell_of(item.get('name'))) else first
+                    yield from flat(item, f'{own}.', depth + 1, lists=lists)
                 elif lists or len(each) == 1:
                     yield from flat(item, f'{whole}.', depth + 1, lists=lists)
         else:

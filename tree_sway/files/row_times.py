@@ -166,10 +166,7 @@ def _in_utc(times: Times, name: str) -> Times:
         return times._replace(note=f'zone {name} is not known here; times are left as they are')
     epoch = times.epoch or 0.0
     begin = datetime(1970, 1, 1, tzinfo=zone) + timedelta(seconds=epoch)
-    offsets = np.zeros(len(times.seconds))
-    known = np.isfinite(times.seconds)
-    moments = (begin + timedelta(seconds=each) for each in times.seconds[known].tolist())
-    offsets[known] = [(each.utcoffset() or timedelta()).total_seconds() for each in moments]
-    shift = float(offsets[known][:1].sum())
-    seconds = times.seconds - (offsets - shift)
-    return times._replace(seconds=seconds, epoch=epoch - shift)
+    passed = [0.0, *np.nan_to_num(times.seconds).tolist()]
+    moments = (begin + timedelta(seconds=each) for each in passed)
+    shift, *shifts = ((each.utcoffset() or timedelta()).total_seconds() for each in moments)
+    return times._replace(seconds=times.seconds - shifts + shift, epoch=epoch - shift)

@@ -197,6 +197,13 @@ class TextTable:
         split = (self.split(self.texts[row]) for row in rows)
         return [row[index] if index < len(row) else '' for row in split]
 
+    def rows_by(self, index: int) -> dict[str, list[int]]:
+        """Rows of each text in a column."""
+        rows: dict[str, list[int]] = {}
+        for row, text in enumerate(self.cells(index, self.rows)):
+            rows.setdefault(text, []).append(row)
+        return rows
+
     def refuse_several(self) -> None:
         """Refuse rows of several instruments, told by a column that names them."""
         size = len(self.columns)

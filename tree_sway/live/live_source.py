@@ -9,7 +9,7 @@ Wind and motion differ in what they do with a message; that is in `LiveWind` and
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 import math
 import threading
 import time
@@ -18,7 +18,7 @@ from tree_sway.errors import shown
 from tree_sway.live.one_sender import OneSender
 from tree_sway.live.source import Source
 from tree_sway.live.transports.link import Link, LONGEST_PAUSE
-from tree_sway.live.transports.transport import Message
+from tree_sway.live.transports.transport import Log, Message
 
 _LOOK = 0.5
 """Interval at which it is looked whether anything comes [s]."""
@@ -48,7 +48,7 @@ class LiveSource(ABC):
     def __init__(
         self,
         source: Source,
-        log: Callable[[str], None],
+        log: Log,
         *,
         patience: Mapping[str, float],
         silence: float | None = None,

@@ -26,7 +26,7 @@ from tree_sway.live.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.live.live_source import LiveSource
 from tree_sway.live.recent import RecentSamples
 from tree_sway.live.registry import OpenedSource
-from tree_sway.live.transports.transport import Message
+from tree_sway.live.transports.transport import Log, Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
 Sample = tuple[float, Velocity]
@@ -73,7 +73,7 @@ class LiveWind(LiveSource):
     def __init__(
         self,
         opened: OpenedSource,
-        log: Callable[[str], None],
+        log: Log,
         *,
         taken: Callable[[Velocity], None] | None = None,
         heard: Callable[[WindReading], None] | None = None,

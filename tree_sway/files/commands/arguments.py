@@ -22,7 +22,7 @@ from tree_sway.files import reader_options, refuse_unwritable
 from tree_sway.files.commands.typed_names import tree_name
 from tree_sway.files.export import write_tree
 from tree_sway.files.trees import open_scene, open_tree, TreeFile
-from tree_sway.files.trees.tree_options import same
+from tree_sway.files.trees.tree_options import same, Wood
 from tree_sway.files.trees.yaml.tree_yaml import is_species_file, read_species
 
 T = TypeVar('T')
@@ -112,7 +112,7 @@ def say_warnings(warnings: Iterable[str]) -> None:
         say(warning, 'warning')
 
 
-def _wood_of(arguments: argparse.Namespace) -> Callable[[Species], Species]:
+def _wood_of(arguments: argparse.Namespace) -> Wood:
     """Return the species of the arguments for that of a file."""
     given = _species(arguments)
     changed = _wood(arguments)

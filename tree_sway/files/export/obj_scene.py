@@ -34,7 +34,7 @@ class ObjScene:
 
     """
 
-    def __init__(self, tree: Tree, leaves: LeafClusters | None = None) -> None:
+    def __init__(self, tree: Tree, leaves: LeafClusters | None) -> None:
         self._meshes: list[TreeMesh] = [wood_mesh(tree)]
         if leaves is not None:
             self._meshes.append(leaf_mesh(leaves, look_of(tree.species).spray))

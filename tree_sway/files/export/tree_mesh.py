@@ -77,7 +77,6 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     Texture coordinates go around and back, without a seam, and on along the branch: the picture is
     as high as `BARK_HEIGHT`, less on small trees.
     """
-    n = tree.n_segments
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
     around = np.column_stack([0.0 * angle, np.cos(angle), np.sin(angle)])
     radius = 0.5 * np.column_stack([tree.base_diameter, tree.tip_diameter])
@@ -85,28 +84,44 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     rings[:, 1, :, 0] = tree.length[:, None]
     slope = np.arctan2(radius[:, 0] - radius[:, 1], tree.length)[:, None, None]
     outward = np.cos(slope) * around + np.sin(slope) * [1.0, 0.0, 0.0]
-    normals = np.repeat(outward, 2, axis=0)  # of both rings
     end = np.cumsum(tree.length)
     start = end - tree.length
     before = start[tree.branch_first[:-1]][tree.branch_of_segment]
     way = np.column_stack([start - before, end - before])
     picture_height = min(BARK_HEIGHT, 0.12 * tree.height)
-    texture = np.empty((n, 2, SIDES, 2))
-    texture[..., 0] = 1.0 - np.abs(1.0 - angle / np.pi)
-    texture[..., 1] = (way / picture_height)[:, :, None]
-    i = np.arange(SIDES)
-    j = (i + 1) % SIDES
+    across = 1.0 - np.abs(1.0 - angle / np.pi)
+    along = way[:, :, None] / picture_height
+    texture = np.stack(np.broadcast_arrays(across, along), axis=-1)
+    normals = np.tile(outward, (1, 2, 1))  # of both rings
+    segment = np.arange(tree.n_segments)
+    return _mesh_of_copies(rings, normals, texture, segment, _cone())
+
+
+def _cone() -> Ints:
+    """Triangles of a cone, (t, 3), between its near ring and its far one, and of its ends."""
+    near = np.arange(SIDES)
+    after = np.roll(near, -1)
+    far = near + SIDES
+    far_after = after + SIDES
+    around = np.column_stack([near, after, far_after, near, far_after, far])
     fan = np.arange(1, SIDES - 1)
-    around_it = np.column_stack([i, j, j + SIDES, i, j + SIDES, i + SIDES]).reshape(-1, 3)
-    far_end = np.column_stack([0 * fan, fan, fan + 1]) + SIDES
-    of_cone = np.vstack([around_it, far_end[:, [0, 2, 1]] - SIDES, far_end])
-    triangles = 2 * SIDES * np.arange(n)[:, None, None] + of_cone
+    near_end = np.column_stack([0 * fan, fan + 1, fan])
+    far_end = near_end[:, [0, 2, 1]] + SIDES
+    return np.vstack([around.reshape(-1, 3), near_end, far_end])
+
+
+def _mesh_of_copies(
+    points: Floats, normals: Floats, texture: Floats, segment: Ints, triangles: Ints
+) -> TreeMesh:
+    """Mesh of copies of one shape, of a segment each, (n, ...), with the triangles of one."""
+    corners = points[0].size // 3
+    first = corners * np.arange(len(segment))[:, None, None]
     return TreeMesh(
-        rings.reshape(-1, 3),
+        points.reshape(-1, 3),
         normals.reshape(-1, 3),
         texture.reshape(-1, 2),
-        np.repeat(np.arange(n), 2 * SIDES),
-        triangles.reshape(-1, 3),
+        np.repeat(segment, corners),
+        (first + triangles).reshape(-1, 3),
     )
 
 
@@ -142,7 +157,8 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     foot = tree.start[is_root, 2]
     # Not of length 1: that would turn at once in the middle, as light and shade meet at an edge.
     away = centre - _means(centre, number)[number]
-    away /= np.maximum(np.sqrt(_means(away**2, number)), 1e-9)[number]
+    deviation = np.sqrt(_means(away**2, number))
+    away /= np.maximum(deviation, 1e-9)[number]
     away[:, 2] = _UPRIGHT * away[:, 2] + _SKYWARD
     rotation = Rotation.from_quat(poses[segment, 3:])
     outward = rotation.inv().apply(away)[:, None]
@@ -151,7 +167,7 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     # Viewers turn the normals of a back: the front of each card is outside.
     is_back = (own * outward).sum(axis=(1, 2)) < 0.0
     points[is_back] = points[is_back, ::-1]
-    own = np.where(is_back[:, None, None], -own[:, ::-1], own)
+    own[is_back] = -own[is_back, ::-1]
     normals = _unit(_FLAT * own + outward)
     lowest = corners[..., 2].min(axis=1)
     is_above = lowest >= foot[number]
@@ -196,16 +212,9 @@ def _unit(vectors: Floats) -> Floats:
 
 def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
     """Mesh of cards from their corners and the normals there, (m, 4, 3)."""
-    n = len(points)
-    triangles = 4 * np.arange(n)[:, None, None] + np.array([[0, 1, 2], [0, 2, 3]])
-    of_picture = _CORNERS + np.array([0.0, 0.5])
-    return TreeMesh(
-        points.reshape(-1, 3),
-        normals.reshape(-1, 3),
-        np.tile(of_picture, (n, 1)),
-        np.repeat(segment, 4),
-        triangles.reshape(-1, 3),
-    )
+    of_picture = np.tile(_CORNERS + np.array([0.0, 0.5]), (len(points), 1))
+    both_halves = np.array([[0, 1, 2], [0, 2, 3]])
+    return _mesh_of_copies(points, normals, of_picture, segment, both_halves)
 
 
 def _cards(leaves: LeafClusters, spray: Spray, card: int) -> tuple[Floats, Floats]:
@@ -221,9 +230,10 @@ def _cards(leaves: LeafClusters, spray: Spray, card: int) -> tuple[Floats, Float
     corner = long[..., None] * _turned(around, flat)
     corner[..., 0] -= 0.5 * leaves.size[:, None]
     corner[..., 2] -= _BOW * long * u
-    points = _turned(turns, corner) + leaves.offset[:, None]
-    normal = _unit(np.column_stack([0.3 * u, 1.2 * v, np.ones(4)]))
-    return points, _turned(turns * around, normal)
+    points = _turned(turns, corner)
+    points += leaves.offset[:, None]
+    bent = np.column_stack([0.3 * u, 1.2 * v, np.ones(4)])
+    return points, _turned(turns * around, _unit(bent))
 
 
 def _turned(rotations: Rotation, vectors: Floats) -> Floats:

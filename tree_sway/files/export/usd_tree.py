@@ -33,9 +33,7 @@ _SHOOTS = 4
 """Shoots per cluster of leaves."""
 
 
-def usd_of_tree(
-    simulator: SwaySimulator, leaves: LeafClusters | None = None, pictures: str = ''
-) -> str:
+def usd_of_tree(simulator: SwaySimulator, leaves: LeafClusters | None, pictures: str = '') -> str:
     """
     Return the tree of a simulator as ``.usda``, with or without leaves.
 

@@ -19,7 +19,7 @@ from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import is_named, unit_known
+from tree_sway.files.column_names import is_named, is_wind, unit_known
 from tree_sway.files.json_values import (
     cell_of,
     DEEPEST,
@@ -27,12 +27,12 @@ from tree_sway.files.json_values import (
     flat,
     list_of,
     object_of,
+    Record,
     text_of,
     unit_beside,
 )
 from tree_sway.files.layouts.layout import begins, Layout
 from tree_sway.files.layouts.long import (
-    is_wind,
     note_of_several,
     unit_for,
     Value,
@@ -64,7 +64,8 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
     units = dict(_units_in(document, is_inside=False))
-    tables = [deltas] if deltas else list(_tables(told or document, units, source, 0))
+    searched = told or document
+    tables = [deltas] if deltas else list(_tables(searched, units, source, 0))
     # One with a wind before a longer one of another sensor.
     winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
     if not tables:
@@ -92,9 +93,9 @@ def _units_in(node: Any, *, is_inside: bool, depth: int = 0) -> Iterator[tuple[s
             yield from _units_in(each, is_inside=inside, depth=depth + 1)
 
 
-def _of_tempest(messages: list[Any]) -> list[dict[str, Any]]:
+def _of_tempest(messages: list[Any]) -> list[Record]:
     """Return the wind of a Tempest's messages of the most common type; empty for others."""
-    of_type: dict[str, list[dict[str, Any]]] = {}
+    of_type: dict[str, list[Record]] = {}
     for message in messages:
         if found := tempest_values(message):
             of_type.setdefault(message['type'], []).extend(found)
@@ -110,11 +111,10 @@ def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
     ]
     there = {name for _, _, name, _ in found}
     for speed, angle, is_from_bow in SIGNALK_PAIRS:
-        if {speed, angle} <= there and not is_from_bow:
-            names = {speed: 'wind_speed', angle: 'wind_direction'}
-            units = {'wind_speed': 'm/s', 'wind_direction': 'rad'}
+        names = {speed: 'wind_speed [m/s]', angle: 'wind_direction [rad]'}
+        if names.keys() <= there and not is_from_bow:
             wind = [(*each[:2], names[each[2]], each[3]) for each in found if each[2] in names]
-            return wide_table(wind, source, 'time', units)
+            return wide_table(wind, source, 'time')
     if found:
         raise FormatError(
             f'no true wind among the paths {", ".join(sorted(there)[:8])}',
@@ -143,14 +143,14 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
         if rows := list(_rows(node, own)):
             yield _records(rows, units | own, source)
         for name, each in node.items():
-            beside = object_of(node.get('units')) or _said_units(node) or units
-            own_units = units | object_of(node.get(f'{name}_units', beside))
-            yield from _tables(each, own_units, source, depth + 1)
+            beside = object_of(node.get('units')) or _said_units(node)
+            own_units = object_of(node.get(f'{name}_units', beside))
+            yield from _tables(each, units | own_units, source, depth + 1)
         if columns := spread_rows(node, own):  # after those of a part of it
             yield _records(columns, units | own, source)
 
 
-def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
+def _samples(messages: list[Any]) -> Iterator[Record]:
     """
     Yield the samples of messages with a time and a list of samples each, at even times.
 
@@ -177,7 +177,7 @@ def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
             yield {clock: start + number * (end - start) / len(samples), batch: sample}
 
 
-def _said_units(node: dict[str, Any]) -> Cells:
+def _said_units(node: Record) -> Cells:
     """System of units of weather.com's history and Dark Sky, or titles of columns behind #."""
     system = object_of(node.get('metadata', node.get('flags'))).get('units')
     channel = object_of(node.get('channel'))  # ThingSpeak's names of its fields
@@ -185,7 +185,7 @@ def _said_units(node: dict[str, Any]) -> Cells:
     return {'*': system} if isinstance(system, str) else titles
 
 
-def _rows(node: dict[str, Any], units: Cells) -> Iterator[dict[str, Any]]:
+def _rows(node: Record, units: Cells) -> Iterator[Record]:
     """
     Yield records of a list of rows beside a list of its names, and note the units beside these.
 
@@ -216,13 +216,13 @@ def _words(value: Any) -> list[Any]:
     return value.split(',') if isinstance(value, str) and ',' in value else list_of(value)
 
 
-def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
+def _records(node: list[Record], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
     system = {'units': text_of(units['*'])} if units.get('*') else {}
-    records = list[dict[str, str]]()
-    several: dict[str, str] = {}
-    for number, each in enumerate(map(_by_name, node), start=1):
-        record: dict[str, str] = {}
+    records = list[Cells]()
+    several: Cells = {}
+    for number, each in enumerate(node, start=1):
+        record: Cells = {}
         for name, text in flat(each):
             if record.get(name, text) != text and is_wind(name.removesuffix('.value')):
                 several[name] = f'record {number}'
@@ -236,25 +236,14 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
     return widened(replace(table, note=note_of_several(several)))
 
 
-def _by_name(record: dict[str, Any]) -> dict[str, Any]:
-    """Return a record whose lists of names and values are values by name, as those of the IMS."""
-    found: dict[str, Any] = {}
-    for key, each in record.items():
-        parts = [*map(object_of, list_of(each))]
-        named = {
-            text_of(part['name']): part['value'] for part in parts if {'name', 'value'} <= {*part}
-        }
-        found |= named if any(map(is_wind, named)) else {key: each}
-    return found
-
-
 def _series(node: Any, before: str, units: Cells) -> Iterator[Value]:
     """
     Yield the values of quantities that are lists of a time and a value, and note their units.
 
     Their names are those of the lists, or texts beside these, as at Prometheus and SensorThings.
     """
-    own_names = node.items() if isinstance(node, dict) else (('', each) for each in list_of(node))
+    unnamed = (('', each) for each in list_of(node))
+    own_names = node.items() if isinstance(node, dict) else unnamed
     for own, each in own_names:
         inside = object_of(each)
         pairs = [] if any(map(is_wind, inside)) else _listed(each)
@@ -295,17 +284,18 @@ def _pairs(listed: Any) -> list[tuple[str, Any]]:
             parts = sorted(each, key=lambda part: not _CLOCK.match(cell_of(part)))
         elif not values:
             return []
-        clock = cell_of(next((part for part in parts if _CLOCK.match(cell_of(part))), None))
+        clock = next(filter(_CLOCK.match, map(cell_of, parts)), '')
         if not clock:
             return []
-        found.append((clock.partition('/P')[0], parts[-1]))
+        begin = clock.partition('/P')[0]
+        found.append((begin, parts[-1]))
     return found
 
 
-def _states(node: list[Any]) -> Iterator[dict[str, Any]]:
+def _states(node: list[Any]) -> Iterator[Record]:
     """Yield the states of Home Assistant's lists; only the first of each may name its entity."""
     for states in node if all(map(list_of, node)) else ():
-        known: dict[str, Any] = {}
+        known: Record = {}
         for state in map(object_of, states):
             known = known | {'last_changed': state.get('last_updated')} | state
             if 'state' in state:

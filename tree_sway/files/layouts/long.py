@@ -14,18 +14,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-import re
 from typing import Any
 
-from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import folded, is_named, SENDERS
+from tree_sway.files.column_names import folded, is_named, is_wind, STATION, WIND
 from tree_sway.files.json_values import text_of
 from tree_sway.files.row_times import time_columns
 from tree_sway.files.table_file import TextTable
 
-_STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
-WIND = ('wind_speed', 'wind_direction', 'gust')
 _LOOKED_AT = 200
 _NO_STATE = ('unavailable', 'unknown', '')
 Value = tuple[int, str, str, str]
@@ -58,7 +54,7 @@ def wide_table(
         newest |= by_time[time]
         rows.append([time, *newest.values()])
     # sensor.garden_wind_speed is wind_speed, if no other sensor is called so.
-    short = [_STATION.sub('', name, count=1) for name in names]
+    short = [STATION.sub('', name, count=1) for name in names]
     columns = short if len({*short}) == len(short) else names
     numbers = [lines[time] for time in sorted(by_time)]
     units = [(unit_of or {}).get(name, '') for name in names]
@@ -85,16 +81,12 @@ def widened(table: TextTable) -> TextTable:
         return table
     units: dict[str, str] = {}
     clock, value = (each[0] for each in wanted)
+    for rows in table.rows_by(name).values():
+        short.part(rows).refuse_several()
     found = time_columns(table)
     parts, form = found[:2] if found and found[1] else ([clock], '{0}')  # a date may be apart
     values = _values(short, (*parts, name, value), form, units)
     return wide_table(values, table.source, table.columns[clock], units)
-
-
-def is_wind(name: str) -> bool:
-    """Whether a text is the name of a quantity of the wind, maybe behind that of a station."""
-    plain = _STATION.sub('', name, count=1)
-    return is_named(plain, *WIND)
 
 
 def unit_for(name: str, units: Mapping[str, Any]) -> str:
@@ -109,10 +101,7 @@ def _values(
 ) -> Iterator[Value]:
     """Yield the values of a long table, whose times have a form, and note their units."""
     names = table.columns
-    senders = [i for i, name in enumerate(names) if folded(name) in SENDERS[:-1]]
-    senders = [each for each in senders if each not in wanted]
     units_at = [i for i, name in enumerate(names) if folded(name).startswith('unit')]
-    sender_of: dict[str, str] = {}
     for line, text in zip(table.numbers, table.texts, strict=True):
         cells = table.split(text)
         # There is a header above each of several tables.
@@ -120,14 +109,6 @@ def _values(
             continue
         *clock, name, value = (cells[each] for each in wanted)
         time = form.format(*clock)
-        sender = ' '.join(cells[each] for each in senders)
-        first = sender_of.setdefault(name, sender)
-        if sender != first:
-            raise FormatError(
-                f'rows of 2 instruments: {first}, {sender}',
-                where=f'{table.source}:{line}',
-                cure='write a table for each',
-            )
         if value not in _NO_STATE:
             units.setdefault(name, cells[units_at[0]] if units_at else '')
             yield line, time, name, value

@@ -164,7 +164,8 @@ def units_above(table: TextTable, above: Sequence[str]) -> tuple[str, ...]:
     def unit_of(column: str) -> str:
         kinds = [COLUMNS[each]['unit'] for each in HEADER if is_named(column, each)]
         parts = (part for line in said if column in line for part in line if part != column)
-        return next((part for part in parts if any(unit_known(k, part) for k in kinds)), '')
+        known = (part for part in parts if any(unit_known(kind, part) for kind in kinds))
+        return next(known, '')
 
     return tuple(map(unit_of, table.columns))
 

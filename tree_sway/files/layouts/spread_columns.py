@@ -13,22 +13,19 @@ from collections.abc import Iterator
 from typing import Any
 
 from tree_sway.files.column_names import is_named
-from tree_sway.files.json_values import DEEPEST, list_of, object_of, text_of
+from tree_sway.files.json_values import DEEPEST, list_of, object_of, Record, text_of
 
 _OF_QUANTITY = ('data', 'values')
 
 
-def spread_rows(node: Any, units: dict[str, str]) -> list[dict[str, Any]]:
+def spread_rows(node: Any, units: dict[str, str]) -> list[Record]:
     """
     Return records of the columns as long as that of the time, wherever they are in a node.
 
     There are none without two such columns. Their units are noted.
     """
     columns = dict(_lists(node, '', units))
-    clock = next((name for name in columns if is_named(name, 'time')), None)
-    if clock is None:
-        return []
-    size = len(columns[clock])
+    size = next((len(values) for name, values in columns.items() if is_named(name, 'time')), 0)
     alike = {name: values for name, values in columns.items() if len(values) == size}
     rows = zip(*alike.values(), strict=True) if len(alike) > 1 else ()
     return [dict(zip(alike, row, strict=True)) for row in rows]

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from tree_sway.files.json_values import list_of, object_of
+from tree_sway.files.json_values import list_of, object_of, Record
 from tree_sway.tables import table_beside
 
 _TYPES = {each['type']: each for each in table_beside(__file__, 'station_messages.csv')}
@@ -35,7 +35,7 @@ class PathValue(NamedTuple):
     time: str
 
 
-def tempest_values(message: Any) -> list[dict[str, Any]]:
+def tempest_values(message: Any) -> list[Record]:
     """Return the times and winds of a Tempest's message by name; none of any other message."""
     kind = object_of(message).get('type')
     places = _TYPES.get(kind) if isinstance(kind, str) else None

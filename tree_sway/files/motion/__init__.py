@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from tree_sway.files.json_values import unit_beside as unit_beside
     from tree_sway.files.motion.imu_bag import read_imu_bag as read_imu_bag
     from tree_sway.files.motion.motion_file import read_motion as read_motion
+    from tree_sway.files.motion.motion_record import AXES as AXES
     from tree_sway.files.motion.motion_record import MotionRecord as MotionRecord
     from tree_sway.files.motion.strain_table import read_strain as read_strain
     from tree_sway.files.motion.tree_history import refuse_no_history as refuse_no_history

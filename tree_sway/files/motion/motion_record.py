@@ -11,6 +11,9 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.drawn import Drawn
 
+AXES = {'acceleration': 'xyz', 'rate': 'xyz', 'orientation': 'xyzw'}
+"""Quantities that a motion sensor measures, and their axes."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MotionRecord(Drawn):
@@ -46,8 +49,7 @@ class MotionRecord(Drawn):
 
     def __repr__(self) -> str:
         """Return source, length and what was measured on one line."""
-        quantities = 'acceleration', 'rate', 'orientation'
-        measured = [each for each in quantities if getattr(self, each) is not None]
+        measured = [each for each in AXES if getattr(self, each) is not None]
         seconds = float(self.time[-1] - self.time[0]) if len(self.time) else 0.0
         size = f'{len(self.time)} samples, {seconds:.4g} s'
         return f'MotionRecord {self.source!r}: {size}, {", ".join(measured)}'

@@ -34,7 +34,7 @@ from tree_sway.files.column_names import (
 )
 from tree_sway.files.layouts.known import table_of
 from tree_sway.files.makers import maker_of
-from tree_sway.files.motion.motion_record import MotionRecord
+from tree_sway.files.motion.motion_record import AXES, MotionRecord
 from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import counted_times, row_times, time_columns
 from tree_sway.files.table_file import TextTable
@@ -42,7 +42,6 @@ from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import Times
 from tree_sway.files.zipped import tables_in
 
-_AXES = {'acceleration': 'xyz', 'rate': 'xyz', 'orientation': 'xyzw'}
 _VECTORS = ('rate', 'acceleration')
 _BARE_AXIS = re.compile(r'(?:axis)?([xyz])(?:axis|value)?')
 _ABOUT = 'Metadata.csv'
@@ -106,10 +105,7 @@ def _by_sensor(table: TextTable) -> list[TextTable]:
     """Return the rows of each sensor of motion, where a column names it, as tables of files."""
     moves = {quantity: words for quantity, words in FILES_OF.items() if quantity}
     for index, column in enumerate(table.columns):
-        rows: dict[str, list[int]] = {}
-        names = table.cells(index, table.rows) if folded(column) in SENDERS else ()
-        for row, name in enumerate(names):
-            rows.setdefault(name, []).append(row)
+        rows = table.rows_by(index) if folded(column) in SENDERS else {}
         told = [each for each in rows if any(w.search(folded(each)) for w in moves.values())]
         if len(told) > 1 and min(len(rows[each]) for each in told) > 1:
             return [table.part(rows[each], f'/{each}') for each in sorted(told)]
@@ -180,10 +176,10 @@ def _joined(records: Sequence[MotionRecord], source: str) -> MotionRecord:
     That is one with gravity if there is one, else with an acceleration, else with a rate.
     """
     first = max(records, key=_worth)
-    found = {quantity: getattr(first, quantity) for quantity in _AXES}
+    found = {quantity: getattr(first, quantity) for quantity in AXES}
     notes = list(first.notes)
     for each in records:
-        for quantity in _AXES:
+        for quantity in AXES:
             values = getattr(each, quantity)
             if found[quantity] is None and values is not None:
                 are_dated = first.epoch is not None and each.epoch is not None
@@ -215,7 +211,7 @@ def _axes(table: TextTable, stem: str) -> dict[str, list[int]]:
     bare_axes = found.pop(('', ''), {})
     picked: dict[str, list[int]] = {}
     for (quantity, _), axes in found.items():
-        wanted = _AXES.get(quantity, '')
+        wanted = AXES.get(quantity, '')
         names = wanted if axes.keys() >= set(wanted) else ''.join(sorted(axes))
         if wanted and len(names) == len(wanted) and (names == wanted or names.isdecimal()):
             picked.setdefault(quantity, [axes[axis] for axis in names])

@@ -82,7 +82,7 @@ def read_strain(path: Path) -> StrainRecord:
     values = table.values(gauges) * factor
     if not (np.isfinite(times.seconds).any() and np.isfinite(values).any(axis=0).all()):
         raise table.error(
-            f"no time in '{dated[0]}', or a column without numbers",
+            f"no time in '{''.join(dated[:1])}', or a column without numbers",
             cure='put the time first, and leave that pair out',
         )
     away = np.abs(values - np.nanmedian(values, axis=0))

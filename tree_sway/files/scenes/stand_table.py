@@ -35,9 +35,9 @@ from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.growth import grow, height_of_stem, stem_range
 
 
-def is_stand_table(head: str, path: Path | None = None) -> bool:
+def is_stand_table(head: str, path: Path) -> bool:
     """Whether the beginning of a file is an inventory; ``path`` tells those that are not text."""
-    return (path is not None and has_own_format(path, head)) or lacking_columns(head) == []
+    return has_own_format(path, head) or lacking_columns(head) == []
 
 
 def read_stand_table(

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ import warnings
 import numpy as np
 
 from tree_sway.core.scene import PlacedTree, Scene
-from tree_sway.core.species import Species, species_keys, species_named
+from tree_sway.core.species import species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.file_format import UnknownFormatError
@@ -25,7 +25,7 @@ from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table
 from tree_sway.files.text_file import read_head
 from tree_sway.files.trees.imported_tree import said_of, TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
-from tree_sway.files.trees.tree_options import same
+from tree_sway.files.trees.tree_options import same, Wood
 from tree_sway.files.yaml_document import begins_with_key
 from tree_sway.growth import builtin_tree, BUILTIN_TREES
 
@@ -34,7 +34,7 @@ def open_tree(
     name_or_path: str | Path,
     seed: int = 0,
     *,
-    wood: Callable[[Species], Species] = same,
+    wood: Wood = same,
     in_leaf: bool | None = None,
     warn: bool = True,
     **options: Any,
@@ -135,7 +135,7 @@ def open_scene(
     seed: int = 0,
     *,
     exact: bool = False,
-    wood: Callable[[Species], Species] = same,
+    wood: Wood = same,
     in_leaf: bool | None = None,
     warn: bool = True,
     **options: Any,
@@ -180,7 +180,7 @@ def _scene(
     path = path_of(name_or_path)
     if str(name_or_path) in BUILTIN_TREES or not path.is_file():
         return scene_of_files([open_tree(name_or_path, seed, warn=False, **asked, **options)])
-    wood: Callable[[Species], Species] = asked['wood']
+    wood: Wood = asked['wood']
     opened = partial(open_tree, in_leaf=asked['in_leaf'], warn=False)
     head = read_head(path)
     read = None

@@ -9,14 +9,12 @@ with a `FileFormat`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tree_sway.core.species import Species
 from tree_sway.errors import ParameterError
 from tree_sway.files.file_format import format_of
 from tree_sway.files.kinds import expected
@@ -24,7 +22,7 @@ from tree_sway.files.paths import of_file
 from tree_sway.files.trees.cylinders.cylinder_tree import tree_of_cylinders
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_formats import TREE_FORMATS as TREE_FORMATS
-from tree_sway.files.trees.tree_options import same, TreeOptions
+from tree_sway.files.trees.tree_options import same, TreeOptions, Wood
 
 
 @of_file
@@ -34,7 +32,7 @@ def read_trees(
     format: str | None = None,  # noqa: A002
     *,
     head: str | None = None,
-    wood: Callable[[Species], Species] = same,
+    wood: Wood = same,
     in_leaf: bool | None = None,
     **options: Any,
 ) -> tuple[TreeFile, ...]:

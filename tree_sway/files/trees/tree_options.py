@@ -38,6 +38,10 @@ All others describe a tree, which is as its file states it unless a change is as
 """
 
 
+Wood = Callable[[Species], Species]
+"""Function that returns the species to use in place of that of a file."""
+
+
 def same(species: Species) -> Species:
     """Return the species of a file unchanged."""
     return species
@@ -110,7 +114,7 @@ class TreeOptions:
     def applied(
         self,
         content: TreeFile,
-        wood: Callable[[Species], Species] = same,
+        wood: Wood = same,
         in_leaf: bool | None = None,
     ) -> TreeFile:
         """

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from tree_sway.files.wind.phone import read_phone_sway as read_phone_sway
     from tree_sway.files.wind.reading import of_velocity as of_velocity
     from tree_sway.files.wind.reading import Reading as Reading
+    from tree_sway.files.wind.reading import Readings as Readings
     from tree_sway.files.wind.reading import Refusal as Refusal
     from tree_sway.files.wind.reading import Velocity as Velocity
     from tree_sway.files.wind.reading import WindReading as WindReading

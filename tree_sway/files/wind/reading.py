@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 import math
 
@@ -73,6 +74,7 @@ class Refusal:
 
 
 Reading = WindReading | Refusal
+Readings = Sequence[Reading]
 
 
 def of_velocity(kind: str, velocity: Velocity) -> WindReading:

@@ -120,22 +120,22 @@ def read_table_wind(
 
 def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
     """Return a table with the columns of the lowest height of each wind alone, and which it is."""
-    heights: dict[str, dict[int, float]] = {}
+    heights = list[tuple[str, int, float]]()
+    lowest: dict[str, float] = {}
     names = list(table.columns)
     for index, name in enumerate(names):
         if at := _HEIGHT.search(name):
             plain = f'{name[: at.start()]} {name[at.end() :]}'.strip()
             for quantity in [each for each in _WIND if is_named(plain, each)][:1]:
                 names[index] = plain
-                heights.setdefault(quantity, {})[index] = float(at[1] or at[2])
+                height = float(at[1] or at[2])
+                heights.append((quantity, index, height))
+                lowest[quantity] = min(height, lowest.get(quantity, height))
     if not heights:
         return table, ''
-    known = set[float]()
-    lowest = {quantity: min(of_one.values()) for quantity, of_one in heights.items()}
-    for quantity, of_one in heights.items():
-        known |= {*of_one.values()}
-        for index, height in of_one.items():
-            names[index] = names[index] if height == lowest[quantity] else ''
+    for quantity, index, height in heights:
+        names[index] = names[index] if height == lowest[quantity] else ''
+    known = {height for _, _, height in heights}
     first = lowest.get('wind_speed', next(iter(lowest.values())))
     others = sorted(known - {first})
     more = f'; there is one at {", ".join(f"{each:g}" for each in others)} m' if others else ''

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 import time
 from typing import Any
 
@@ -12,6 +12,7 @@ from tree_sway.errors import ParameterError
 from tree_sway.live.camera.camera_view import CameraView, opencv
 from tree_sway.live.camera.point_tracker import Sighting
 from tree_sway.live.recent import RecentSamples
+from tree_sway.live.transports.transport import Log
 from tree_sway.twin.camera import Camera
 from tree_sway.worker import Worker
 
@@ -100,7 +101,7 @@ class Film:
 class FilmPoints(RecentSamples[Sighting]):
     """Points of the newest pictures of a camera, and the rate of these."""
 
-    def __init__(self, name: str, log: Callable[[str], None]) -> None:
+    def __init__(self, name: str, log: Log) -> None:
         super().__init__(_KEPT, _COUNTED)
         self.name, self._log = name, log
         self.camera: Camera | None = None
@@ -112,7 +113,7 @@ class FilmPoints(RecentSamples[Sighting]):
 class LiveFilm(FilmPoints, Worker):
     """Points of a live camera, followed in a view of it from `start` to `stop`."""
 
-    def __init__(self, film: Film, view: CameraView, log: Callable[[str], None]) -> None:
+    def __init__(self, film: Film, view: CameraView, log: Log) -> None:
         FilmPoints.__init__(self, film.name, log)
         Worker.__init__(self, 'camera')
         self._film, self.view = film, view

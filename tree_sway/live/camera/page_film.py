@@ -22,6 +22,7 @@ from tree_sway.live.camera.film import FilmPoints
 from tree_sway.live.camera.point_tracker import Sighting
 from tree_sway.live.motion.sender_clock import SenderClock
 from tree_sway.live.one_sender import OneSender
+from tree_sway.live.transports.transport import Log
 from tree_sway.newest import Newest
 from tree_sway.twin.camera import (
     Camera,
@@ -68,7 +69,7 @@ class PageFilm(FilmPoints):
 
     """
 
-    def __init__(self, tree: Tree, at: str, log: Callable[[str], None]) -> None:
+    def __init__(self, tree: Tree, at: str, log: Log) -> None:
         super().__init__(PAGE, log)
         told = told_by(at)
         if told.clicks or told.check:

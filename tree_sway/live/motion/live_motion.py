@@ -20,7 +20,7 @@ from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.motion.sender_clock import SenderClock
 from tree_sway.live.recent import RecentSamples
 from tree_sway.live.source import Source
-from tree_sway.live.transports.transport import Message
+from tree_sway.live.transports.transport import Log, Message
 
 SLOWEST = 5.0
 """Least number of samples per second [Hz] that follows a tree."""
@@ -55,7 +55,7 @@ class LiveMotion(LiveSource):
     def __init__(
         self,
         source: Source,
-        log: Callable[[str], None],
+        log: Log,
         *,
         heard: Callable[[MotionReading], None] | None = None,
     ) -> None:

@@ -19,7 +19,7 @@ import math
 from typing import Any
 
 from tree_sway.files import motion_of, rank_of
-from tree_sway.files.motion import flat
+from tree_sway.files.motion import AXES, flat
 from tree_sway.files.wind import number, Refusal
 from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.readers.json_path import parse_json, time_of
@@ -34,7 +34,6 @@ _MOST = 500
 """Largest number of samples in one message."""
 _LONGEST = 40
 _MOST_NAMES = 256
-_AXES = {'acceleration': 'xyz', 'rate': 'xyz', 'orientation': 'xyzw'}
 
 
 def read_motion_json(message: Message) -> Sequence[MotionReading | Refusal]:
@@ -49,7 +48,7 @@ def read_motion_json(message: Message) -> Sequence[MotionReading | Refusal]:
 
 def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
     """Return the sample of an object; None without motion."""
-    parts = {name: dict[str, float]() for name in _AXES}
+    parts = {name: dict[str, float]() for name in AXES}
     times = list[float | None]()
     for name, value in islice(flat(document), _MOST_NAMES):
         quantity, axis = _place(name[-_LONGEST:])
@@ -60,7 +59,7 @@ def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
             parts[quantity][axis] = math.nan if known is None else known
     whole = {
         name: tuple(parts[name][axis] for axis in axes)
-        for name, axes in _AXES.items()
+        for name, axes in AXES.items()
         if parts[name].keys() >= set(axes)
     }
     if not whole:
@@ -79,6 +78,6 @@ def _place(name: str) -> tuple[str, str]:
         return 'time', ''
     for each in (name, name.rpartition('.')[2]):  # ax within data is none of "data a"
         quantity, _, axis = motion_of(each) or ('', '', '')
-        if quantity in _AXES and axis in tuple('xyzw'):
+        if quantity in AXES and axis in tuple('xyzw'):
             return quantity, axis
     return '', ''

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tree_sway.files.motion import AXES
+
 Numbers = tuple[float, ...]
 
 
@@ -36,5 +38,4 @@ class MotionReading:
     @property
     def quantities(self) -> tuple[str, ...]:
         """Names of what is measured."""
-        names = ('acceleration', 'rate', 'orientation')
-        return tuple(name for name in names if getattr(self, name) is not None)
+        return tuple(name for name in AXES if getattr(self, name) is not None)

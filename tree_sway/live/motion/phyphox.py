@@ -26,7 +26,7 @@ import numpy as np
 from tree_sway.files import list_of, object_of
 from tree_sway.files.wind import number, Refusal
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
-from tree_sway.live.readers.json_path import parse_json
+from tree_sway.live.readers.json_path import parse_json, value_at
 from tree_sway.live.transports.http_poll import document_of
 from tree_sway.live.transports.link import Link
 from tree_sway.live.transports.loop_transport import LoopTransport
@@ -139,7 +139,7 @@ class PhyphoxPhone(LoopTransport):
         """Take the newest sample that is there now as the one to go on from."""
         times = {each.time: '' for each in self._sensors}
         answer = await self._document(session, '/get', times)
-        if object_of(object_of(answer).get('status')).get('measuring') is False:
+        if value_at(answer, 'status', 'measuring') is False:
             raise ConnectionError('the measurement is paused: press play in phyphox')
         for each in self._sensors:
             values = _values(answer, each.time)
@@ -205,7 +205,7 @@ def _joined(forces: deque[Sample], rates: deque[Sample]) -> list[MotionReading |
 def _sensors_of(config: Any) -> list[_Sensor]:
     """Return the sensors of an experiment by ``/config``; a `ConnectionError` without any."""
     sources: dict[str, Mapping[str, Any]] = {}
-    for each in map(object_of, list_of(object_of(config).get('inputs'))):
+    for each in map(object_of, list_of(value_at(config, 'inputs'))):
         named = ChainMap(*map(object_of, list_of(each.get('outputs'))))
         if {'x', 'y', 'z', 't'} <= named.keys():
             sources.setdefault(str(each.get('source')), named)
@@ -225,6 +225,5 @@ def _sensors_of(config: Any) -> list[_Sensor]:
 
 def _values(answer: Any, name: str) -> list[float]:
     """Return the values of a buffer in an answer, not a number where there is none."""
-    held = object_of(object_of(object_of(answer).get('buffer')).get(name))
-    known = map(number, list_of(held.get('buffer')))
+    known = map(number, list_of(value_at(answer, 'buffer', name, 'buffer')))
     return [math.nan if each is None else each for each in known]

@@ -9,9 +9,7 @@ the unit (Cumulus Wiki, "Realtime.txt").
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from tree_sway.files.wind import form_of, Reading
+from tree_sway.files.wind import form_of, Readings
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.transports.transport import Message
 
@@ -19,7 +17,7 @@ _FORM = form_of('Cumulus realtime')
 _NAMES = WindNames(unit='unit')
 
 
-def read_realtime(message: Message) -> Sequence[Reading]:
+def read_realtime(message: Message) -> Readings:
     """Read the wind of a file; a refusal if its numbers are none."""
     found = _FORM.fullmatch(message.data.decode('utf-8', 'replace').strip().replace(',', '.'))
     return [] if found is None else _NAMES.read(found.groupdict(), 'Cumulus')

@@ -4,10 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
-from tree_sway.files.wind import Reading
+from tree_sway.files.wind import Readings
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.tempest import is_tempest, read_tempest
 from tree_sway.live.readers.weatherlink import conditions_of, read_weatherlink
@@ -15,7 +14,7 @@ from tree_sway.live.readers.weatherlink import conditions_of, read_weatherlink
 _KIND = 'JSON'
 
 
-def read_document(document: Any, names: WindNames) -> Sequence[Reading]:
+def read_document(document: Any, names: WindNames) -> Readings:
     """Read a document; nothing of None. Where ``names`` have a path, that decides."""
     if names.speed is None and is_tempest(document):
         return read_tempest(document)

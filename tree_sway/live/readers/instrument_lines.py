@@ -22,6 +22,7 @@ from tree_sway.files.wind import (
     parse_nmea,
     read_instrument,
     Reading,
+    Readings,
     Refusal,
     SENTENCES,
     WindReading,
@@ -88,7 +89,7 @@ class InstrumentLines:
         """Kind that is read; empty before it is known."""
         return self.found if self.sentence == 'auto' else self.sentence
 
-    def __call__(self, message: Message) -> Sequence[Reading]:
+    def __call__(self, message: Message) -> Readings:
         """Read the lines of a message."""
         found = list[Reading]()
         lines = message.data.decode('utf-8', 'replace').splitlines()
@@ -121,7 +122,7 @@ class InstrumentLines:
         elif named := pairs_of(line):
             yield from self.names.read(named, 'name=value')
 
-    def _read_json(self, line: str) -> Sequence[Reading]:
+    def _read_json(self, line: str) -> Readings:
         """Read a document, of Signal K as its own source does."""
         document = parse_json(line.encode())
         if isinstance(document, dict) and 'updates' in document:

@@ -44,13 +44,18 @@ class JsonPath:
 
     def find(self, document: Any) -> Any:
         """Return the value, None where there is none."""
-        for step in self._steps:
-            is_inside = isinstance(document, list if isinstance(step, int) else dict)
-            try:
-                document = document[step] if is_inside else None
-            except LookupError:
-                return None
-        return document
+        return value_at(document, *self._steps)
+
+
+def value_at(document: Any, *steps: str | int) -> Any:
+    """Return the value at names and places within a document; None where there is none."""
+    for step in steps:
+        is_inside = isinstance(document, list if isinstance(step, int) else dict)
+        try:
+            document = document[step] if is_inside else None
+        except LookupError:
+            return None
+    return document
 
 
 def parse_json(data: bytes) -> Any:

@@ -10,12 +10,12 @@ the gust, in knots (Aviation Weather Center, "Data API", `metar`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from tree_sway.files import object_of
-from tree_sway.files.wind import number, Reading, Refusal, WindReading
+from tree_sway.files.wind import number, Readings, Refusal, WindReading
 from tree_sway.live.readers.json_path import JsonPath, parse_json, time_of
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.transports.transport import Message
@@ -34,7 +34,7 @@ class ServiceAnswer:
         self._names = WindNames(speed, direction, gust, known['unit'])
         self._about = {each: JsonPath(known[each]) for each in _ABOUT if known[each]}
 
-    def __call__(self, message: Message) -> Sequence[Reading]:
+    def __call__(self, message: Message) -> Readings:
         """Read an answer; its reason is the refusal of one without a wind."""
         document = parse_json(message.data)
         reason = object_of(document).get('reason')

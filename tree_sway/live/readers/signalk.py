@@ -10,13 +10,13 @@ from the bow positive to starboard.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 import math
 
 from tree_sway.files.wind import (
     number,
     Reading,
+    Readings,
     Refusal,
     SIGNALK_PAIRS,
     signalk_values,
@@ -43,7 +43,7 @@ class SignalKWind:
     heading: float = 0.0
     values: dict[str, float] = field(default_factory=dict, init=False)
 
-    def __call__(self, message: Message) -> Sequence[Reading]:
+    def __call__(self, message: Message) -> Readings:
         """Read a delta: a reading where it has the speed of the best pair."""
         found = list[Reading]()
         changed = dict[str, str]()

@@ -9,10 +9,9 @@ It has the wind every three seconds; the mean over a minute (``obs_st``) is not 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
-from tree_sway.files.wind import Reading, reading_of, tempest_values
+from tree_sway.files.wind import reading_of, Readings, tempest_values
 
 KIND = 'rapid_wind'
 
@@ -22,7 +21,7 @@ def is_tempest(document: Any) -> bool:
     return isinstance(document, dict) and 'type' in document and 'hub_sn' in document
 
 
-def read_tempest(document: Any) -> Sequence[Reading]:
+def read_tempest(document: Any) -> Readings:
     """Read the wind of an instant; nothing of any other message."""
     found = tempest_values(document)
     if not found or document['type'] != KIND:

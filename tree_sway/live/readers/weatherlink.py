@@ -9,11 +9,10 @@ Speeds are in miles per hour; the last one, ``wind_speed_last``, is new every 2.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from tree_sway.files import list_of, object_of
-from tree_sway.files.wind import Reading
+from tree_sway.files.wind import Readings
 from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.transports.transport import Message
@@ -36,7 +35,7 @@ def conditions_of(document: Any) -> list[Any]:
     return list_of(inside.get('conditions'))
 
 
-def read_weatherlink(document: Any) -> Sequence[Reading]:
+def read_weatherlink(document: Any) -> Readings:
     """Read the conditions of the first station with a wind."""
     for each in conditions_of(document):
         if isinstance(each, dict) and each.get('data_structure_type') == _STATION:
@@ -45,6 +44,6 @@ def read_weatherlink(document: Any) -> Sequence[Reading]:
     return ()
 
 
-def read_conditions(message: Message) -> Sequence[Reading]:
+def read_conditions(message: Message) -> Readings:
     """Read the answer of its local interface."""
     return read_weatherlink(parse_json(message.data))

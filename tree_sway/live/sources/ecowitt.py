@@ -10,12 +10,11 @@ A station sends every 8 to 60 s: a shorter interval than 20 s is the wind itself
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from hashlib import sha256
 from urllib.parse import parse_qsl
 
 from tree_sway.doorkeeper import is_loopback
-from tree_sway.files.wind import Reading, Refusal
+from tree_sway.files.wind import Readings, Refusal
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
@@ -28,7 +27,7 @@ _SHORTEST_PASSKEY = 8
 _NAMES = WindNames()
 
 
-def read_upload(message: Message) -> Sequence[Reading]:
+def read_upload(message: Message) -> Readings:
     """Read a form of the two protocols."""
     try:
         form = parse_qsl(message.data.decode('utf-8', 'replace'), max_num_fields=_MOST_FIELDS)

@@ -4,12 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from urllib.parse import parse_qsl, urlencode
 
 from tree_sway.errors import nearest
 from tree_sway.files import unit_factor
-from tree_sway.files.wind import Reading
+from tree_sway.files.wind import Readings
 from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import names_of
@@ -62,7 +61,7 @@ def open_source(address: SourceAddress) -> Source:
     interval = every if every >= LEAST_INTERVAL else 0.0
     names = names_of(address)
 
-    def read(message: Message) -> Sequence[Reading]:
+    def read(message: Message) -> Readings:
         return read_document(parse_json(message.data), names)
 
     return Source(transport, read, address.host, _EXPECTS, interval)

@@ -10,11 +10,10 @@ has a signed word of 16 bits.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 import re
 import struct
 
-from tree_sway.files.wind import Reading, reading_of, Refusal
+from tree_sway.files.wind import reading_of, Readings, Refusal
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.modbus import KINDS, Modbus, PORT
@@ -53,7 +52,7 @@ def open_source(address: SourceAddress) -> Source:
             f'kind is {kind}, {count} registers', f'use {" or ".join(KINDS)}, up to {_MOST} apart'
         )
 
-    def read(message: Message) -> Sequence[Reading]:
+    def read(message: Message) -> Readings:
         if len(message.data) != 2 * count:
             return [Refusal(_KIND, f'{len(message.data) // 2} registers of {count}')]
         words = struct.unpack(f'>{count}h', message.data)

@@ -4,18 +4,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from urllib.parse import unquote
 
-from tree_sway.files.wind import bearing_of, Reading, WindReading
+from tree_sway.files.wind import bearing_of, Reading, Readings, WindReading
 from tree_sway.live.readers.instrument_lines import lines_of
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.mqtt import Mqtt, PORT, TLS_PORT
 from tree_sway.live.transports.transport import Message
 
-_Read = Callable[[Message], Sequence[Reading]]
+_Read = Callable[[Message], Readings]
 
 
 def open_source(address: SourceAddress) -> Source:
@@ -59,7 +59,7 @@ class _WithVane:
     topic: str
     bearing: float | None = field(default=None, init=False)
 
-    def __call__(self, message: Message) -> Sequence[Reading]:
+    def __call__(self, message: Message) -> Readings:
         if message.origin == self.topic:
             self.bearing = bearing_of(message.data.decode('utf-8', 'replace'))
             return ()

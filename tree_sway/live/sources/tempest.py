@@ -4,9 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from tree_sway.files.wind import Reading
+from tree_sway.files.wind import Readings
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.tempest import read_tempest
 from tree_sway.live.source import Source
@@ -24,7 +22,7 @@ def open_source(address: SourceAddress) -> Source:
     serial = address.text_of('serial')
     port = address.whole('port', _PORT, 1, 65_535)
 
-    def read(message: Message) -> Sequence[Reading]:
+    def read(message: Message) -> Readings:
         document = parse_json(message.data)
         is_other = isinstance(document, dict) and document.get('serial_number') != serial
         return () if serial and is_other else read_tempest(document)

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from tree_sway.live.transports.link_failure import failure_text
 from tree_sway.live.transports.pace import MOST, Pace
-from tree_sway.live.transports.transport import Message
+from tree_sway.live.transports.transport import Log, Message
 from tree_sway.worker import Worker
 
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
@@ -55,7 +55,7 @@ class Link(Worker):
 
     transport: Transport
     take: Callable[[Message], None]
-    log: Callable[[str], None]
+    log: Log
     silence: float | None = None
     first_pause: float = FIRST_PAUSE
     longest_pause: float = LONGEST_PAUSE

@@ -4,7 +4,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+Log = Callable[[str], None]
+"""Function that is told a line of news."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,14 +48,14 @@ class InventoryColumns:
         """Add assumptions that are not empty and not yet there."""
         self.notes += [note for note in notes if note and note not in self.notes]
 
-    def leave_out(self, row: int, reason: str, detail: str = '') -> None:
-        """Leave a row out for a reason; the first is told in full, with its line."""
+    def leave_out(self, row: int, reason: str, detail: str) -> None:
+        """Leave a row out for a reason; the first is told in detail, with its line."""
         if not self.is_kept[row]:
             return
         self.is_kept[row] = False
         self._reasons[reason] += 1
         if not self._first:
-            self._first = f'{self.line(row)}: {detail or reason}'
+            self._first = f'{self.line(row)}: {detail}'
 
     def why_left_out(self) -> str:
         """Return how many rows were left out, why, and the first; empty without one."""

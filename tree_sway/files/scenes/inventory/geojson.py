@@ -14,11 +14,10 @@ from collections.abc import Iterator
 import json
 from pathlib import Path
 import re
-from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.json_values import document_of, flat, list_of, object_of
+from tree_sway.files.json_values import document_of, flat, list_of, object_of, Record
 from tree_sway.files.scenes.inventory.geometry_cell import point_of_cell
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_lines
@@ -74,7 +73,7 @@ def read_geojson(path: Path) -> TextTable:
     return table_of_cells(names, rows, str(path), row_name='feature')
 
 
-def _cells(record: dict[str, Any]) -> Iterator[tuple[str, str]]:
+def _cells(record: Record) -> Iterator[tuple[str, str]]:
     """Yield the names and cells of a record, its place last."""
     own = next((name for name in _PROPERTIES if object_of(record.get(name))), '')
     geometry = object_of(record.get('geometry'))

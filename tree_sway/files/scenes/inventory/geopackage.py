@@ -11,7 +11,7 @@ them, all others are taken in metres.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, suppress
 from itertools import chain, islice
 import math
 from pathlib import Path
@@ -99,22 +99,16 @@ def _point(blob: bytes) -> tuple[float, float] | None:
     """Return x and y of a point, or the first of a multipoint; None for what is neither."""
     if blob[:2] != b'GP':
         return None
-    try:
-        return _point_at(blob, 8 + _ENVELOPES[(blob[3] >> 1) & 7])
-    except (struct.error, IndexError):  # cut off, or a code that the standard does not have
-        return None
-
-
-def _point_at(blob: bytes, at: int) -> tuple[float, float] | None:
-    for _ in range(2):
-        order = '<' if blob[at] == 1 else '>'
-        (kind,) = struct.unpack_from(f'{order}I', blob, at + 1)
-        if kind % 1000 == 1:
-            x, y = struct.unpack_from(f'{order}2d', blob, at + 5)
-            return (x, y) if math.isfinite(x) and math.isfinite(y) else None
-        if kind % 1000 != 4:
-            return None
-        at += 9
+    with suppress(struct.error, IndexError):  # cut off, or a code that the standard does not have
+        at = 8 + _ENVELOPES[(blob[3] >> 1) & 7]
+        for begin in (at, at + 9):  # of a point, and of the first in a multipoint
+            order = '<' if blob[begin] == 1 else '>'
+            (kind,) = struct.unpack_from(f'{order}I', blob, begin + 1)
+            if kind % 1000 == 1:
+                x, y = struct.unpack_from(f'{order}2d', blob, begin + 5)
+                return (x, y) if math.isfinite(x + y) else None
+            if kind % 1000 != 4:
+                break
     return None
 
 

@@ -30,3 +30,7 @@ class Cylinders:
     labels: list[str]
     name: str = ''
     notes: tuple[str, ...] = ()
+
+
+Trees = tuple[Cylinders, ...]
+"""The trees of a file."""

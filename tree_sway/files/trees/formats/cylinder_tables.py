@@ -30,11 +30,11 @@ from tree_sway.files.column_names import folded
 from tree_sway.files.file_format import FileFormat, has_columns
 from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_lines
-from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.cylinders import Cylinders, Trees
 from tree_sway.files.trees.tree_options import FITTED
 
 
-def _read(path: Path) -> tuple[Cylinders, ...]:
+def _read(path: Path) -> Trees:
     """Cylinders of a table."""
     table = parse_table(read_lines(path), str(path))
     names = {folded(column): column for column in table.columns}

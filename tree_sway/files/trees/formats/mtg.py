@@ -26,7 +26,7 @@ import numpy as np
 from tree_sway.errors import FormatError, TreeError
 from tree_sway.files.file_format import contains, FileFormat
 from tree_sway.files.text_file import finite, read_lines
-from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.cylinders import Cylinders, Trees
 
 _POSITION = ('XX', 'YY', 'ZZ')
 _DIAMETER = 'TopDia'
@@ -52,7 +52,7 @@ class _Vertex:
     """Segment that its successors are on."""
 
 
-def _read(path: Path) -> tuple[Cylinders, ...]:
+def _read(path: Path) -> Trees:
     """Segments of a digitised tree, which are of the finest scale that has positions."""
     vertices = _parse(read_lines(path), str(path))
     placed = [vertex for vertex in vertices if vertex.position]

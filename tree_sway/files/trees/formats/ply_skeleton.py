@@ -18,7 +18,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.file_format import contains, FileFormat
 from tree_sway.files.foreign_file import foreign_file
 from tree_sway.files.text_file import read_bytes
-from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.cylinders import Trees
 from tree_sway.files.trees.cylinders.rooted import cylinders_of_edges
 from tree_sway.files.trees.tree_options import FITTED
 
@@ -38,7 +38,7 @@ Elements = dict[str, tuple[int, dict[str, str]]]
 """Number of each kind of element, and the types of its properties by their names."""
 
 
-def _read(path: Path) -> tuple[Cylinders, ...]:
+def _read(path: Path) -> Trees:
     """Tree of a skeleton."""
     data = read_bytes(path)
     try:

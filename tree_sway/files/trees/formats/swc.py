@@ -21,7 +21,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.file_format import FileFormat
 from tree_sway.files.table_file import filled_lines, parse_columns
 from tree_sway.files.text_file import finite, read_lines
-from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.cylinders import Trees
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 
 _COLUMNS = 'number type x y z radius parent'.split()
@@ -48,7 +48,7 @@ def _cells(line: str) -> list[str]:
     return _BETWEEN.split(line.strip())
 
 
-def _read(path: Path) -> tuple[Cylinders, ...]:
+def _read(path: Path) -> Trees:
     """Trees of an SWC file."""
     table = parse_columns(_without_names(read_lines(path)), str(path), _COLUMNS, _cells)
     if not table.texts:

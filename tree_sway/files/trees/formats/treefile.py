@@ -20,14 +20,14 @@ from tree_sway.errors import FormatError, TreeError
 from tree_sway.files.file_format import contains, FileFormat
 from tree_sway.files.table_file import filled_lines, split_row, TextTable
 from tree_sway.files.text_file import read_lines
-from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.cylinders import Cylinders, Trees
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 from tree_sway.files.trees.tree_options import FITTED
 
 _FIELDS = 'x y z radius parent_id'.split()
 
 
-def _read(path: Path) -> tuple[Cylinders, ...]:
+def _read(path: Path) -> Trees:
     """Trees of a file."""
     numbers, lines = filled_lines(read_lines(path))
     if not lines:

@@ -20,7 +20,7 @@ from tree_sway.files.file_format import FileFormat, has_columns
 from tree_sway.files.json_values import cell_of, object_of, parsed
 from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.text_file import read_lines, read_text
-from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.cylinders import Trees
 from tree_sway.files.trees.cylinders.rooted import cylinders_of_edges
 from tree_sway.files.trees.tree_options import FITTED
 
@@ -33,7 +33,7 @@ def _is_other_json(head: str) -> bool:
     return head.lstrip()[:1] in ('{', '[') and '"' in head and _OURS.search(head) is None
 
 
-def _read(path: Path) -> tuple[Cylinders, ...]:
+def _read(path: Path) -> Trees:
     """Cylinders of a file of treegraph."""
     document = parsed(read_text(path))
     if not isinstance(document, dict) or 'cyls' not in document:
@@ -53,12 +53,12 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     return _joined(table_of_cells([*columns], rows, str(path)))
 
 
-def _read_table(path: Path) -> tuple[Cylinders, ...]:
+def _read_table(path: Path) -> Trees:
     """Cylinders of ``cyls`` as a table."""
     return _joined(parse_table(read_lines(path), str(path)))
 
 
-def _joined(table: TextTable) -> tuple[Cylinders, ...]:
+def _joined(table: TextTable) -> Trees:
     """Cylinders of the rows."""
     values = table.values(list(map(table.index_of, _COLUMNS)))
     is_point = values[:, 8] == 0.0

@@ -32,8 +32,8 @@ from tree_sway.errors import FormatError, inside
 from tree_sway.files.file_format import contains, FileFormat
 from tree_sway.files.table_file import parse_columns
 from tree_sway.files.text_file import finite, read_lines
-from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.cylinders.mat_file import numbers, read_mat
+from tree_sway.files.trees.cylinders.cylinders import Cylinders, Trees
+from tree_sway.files.trees.cylinders.mat_file import numbers, read_mat, Variables
 from tree_sway.files.trees.tree_options import FITTED
 
 _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extension': 1}
@@ -88,7 +88,7 @@ def _are_cylinders(table: Floats) -> bool:
     return bool(are_cylinders.mean() > _LEAST_SHARE)
 
 
-def _read_mat(path: Path) -> tuple[Cylinders, ...]:
+def _read_mat(path: Path) -> Trees:
     """Every cylinder model of a MATLAB file."""
     variables = read_mat(path)
     tables = [(name, _table(name, model)) for name, model in _models(variables)]
@@ -106,7 +106,7 @@ def _read_mat(path: Path) -> tuple[Cylinders, ...]:
     )
 
 
-def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
+def read_treeqsm_text(path: Path) -> Trees:
     """Read the cylinders of a TreeQSM text."""
     lines = read_lines(path)
     titles = [row for row, line in enumerate(lines) if line.startswith('#')][1:]
@@ -127,7 +127,7 @@ def _cells(line: str) -> list[str]:
     return cells if len(cells) >= _LEAST_COLUMNS else line.replace(',', ' ').split()
 
 
-def _models(variables: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+def _models(variables: Variables) -> Iterator[tuple[str, Variables]]:
     """Name and columns of each cylinder model, by field name."""
     if variables.keys() >= _VARIABLES.keys():
         yield 'tree', {field: variables[name] for name, field in _VARIABLES.items()}
@@ -140,7 +140,7 @@ def _models(variables: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
                 yield own_name, models[0]
 
 
-def _arrays(variables: dict[str, Any]) -> Iterator[tuple[str, Floats]]:
+def _arrays(variables: Variables) -> Iterator[tuple[str, Floats]]:
     """Name and columns of each array of cylinders, those of cells as well."""
     for name, value in variables.items():
         if isinstance(value, dict):
@@ -154,7 +154,7 @@ def _arrays(variables: dict[str, Any]) -> Iterator[tuple[str, Floats]]:
                     break
 
 
-def _structs(value: Any) -> list[dict[str, Any]]:
+def _structs(value: Any) -> list[Variables]:
     """Return the structs of an array of them, whose names are numbers, or a struct alone."""
     if not isinstance(value, dict):
         return []
@@ -163,7 +163,7 @@ def _structs(value: Any) -> list[dict[str, Any]]:
     return [value]
 
 
-def _table(name: str, fields: dict[str, Any]) -> Floats:
+def _table(name: str, fields: Variables) -> Floats:
     """Columns of the table of cylinders from fields of their names."""
     columns = []
     for field, width in _FIELDS.items():
