@@ -46,7 +46,7 @@ _MOST_UNITS = 6
 _LOOKED_AT = 200
 """Rows that are looked at for whether a column has a cell."""
 _MEND = 'correct the cell or remove the row'
-_NAME = 'write names and units of its columns above it, as time,ax [g] or time,dbh [cm]'
+_NAME = 'write names and units of its columns above it, as time,u [m/s],v or time,ax [g]'
 _STAMP_LETTERS = re.compile(r'(?<=\d)[TZ]')
 _WORDS = re.compile(r'\w[^\s:]*(?:\s+[\w/][^\s:]*){2,}')
 _THOUSANDS = re.compile(r'(?<=\d)\.(?=\d{3}(?:\.\d{3})*,\d)')

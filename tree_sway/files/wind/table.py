@@ -82,16 +82,18 @@ def read_table_wind(
     table = with_units_in_head(table)
     rows = WindRows(table.source)
     time = time_columns(table)
-    components = _components(table, columns)
-    if time is not None and components:
-        notes = [at_height, _repeated(table, components[0], 'wind_x')]
+    places = _components(table, columns)
+    if time is not None and places:
+        told = [speed_factor(table, place, 'wind_x', speed_unit) for place in places]
+        components = [Column(at, factor) for at, (factor, _) in zip(places, told, strict=True)]
+        notes = [at_height, told[0][1], _repeated(table, components[0], 'wind_x')]
         winds = winds_of_components(table, components, rows)
         convention = direction_convention or 'to'
     else:
         found = table.find('wind_speed')
         taken = [*(time or ([],))[0], *([found.index] if found else [])]  # DD may be a day
         from_where, usual = _direction(table, taken, direction)
-        _refuse_missing(whole, time, *(components[:2] or (found, from_where)))
+        _refuse_missing(whole, time, *(places[:2] or (found, from_where)))
         assert found is not None
         assert from_where is not None
         factor, in_unit = speed_factor(table, found.index, 'wind_speed', speed_unit)
@@ -168,18 +170,17 @@ def _repeated(table: TextTable, used: Column, quantity: str) -> str:
     return f'of {len(alike)} columns {", ".join(names)} {which} is read'
 
 
-def _components(table: TextTable, names: tuple[str, ...] | None) -> list[Column]:
-    """Columns of the components: of given names or the usual ones; none without two of them."""
+def _components(table: TextTable, names: tuple[str, ...] | None) -> list[int]:
+    """Places of the components: of given names or the usual ones; none without two of them."""
     if names is not None:
-        indices = [table.index_of(name) for name in names]
-        return [Column(index, table.factor_of(index, 'wind_x')) for index in indices]
+        return [table.index_of(name) for name in names]
     found = [table.find(each) for each in _COMPONENTS]
     if found[0] is None or found[1] is None:
         return []
     is_place = folded(table.columns[found[0].index]) in _PLACES
     if is_place and table.find('wind_speed') and table.find('wind_direction'):
         return []
-    return [column for column in found if column is not None]
+    return [column.index for column in found if column is not None]
 
 
 def _refuse_missing(table: TextTable, *found: object) -> None:

@@ -75,6 +75,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Serve the page until the time is over or Ctrl-C."""
     settings = page_settings(arguments)
+    settings.required_token()  # a missing one is told before a tree is opened
     within('--stand', arguments.stand, 1, 1e5)
     if arguments.seconds is not None:
         within('--seconds', arguments.seconds, 0.0, 1e9, 's')

@@ -115,7 +115,8 @@ def run(arguments: argparse.Namespace) -> int:
     with waiting(f'writing {output}'):
         write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:
-        say(note)
+        if note not in getattr(wind, 'notes', ()):  # those of a record were told before
+            say(note)
     if learned_file is not None:
         write_learned(learned_file, record.learned)
     print(f'{output}: {record}')

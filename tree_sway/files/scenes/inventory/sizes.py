@@ -170,6 +170,8 @@ def heights_of(columns: InventoryColumns, diameter: Floats) -> Floats:
             factor = _FOOT
             why = 'as the trees stand in the United States' if is_in_states else 'by their size'
             columns.note(f'{name} is taken as feet, {why}; call it {name} [m] if it is')
+        elif not unit:
+            columns.note(f'{name} is taken as m')
     height = values * factor
     ratio = _slenderness(height, diameter)
     if unit and ratio > _THINNEST:
