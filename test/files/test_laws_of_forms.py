@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.layouts.known import table_of
 from tree_sway.files.motion import read_motion, read_strain
 from tree_sway.files.scenes import Inventory, inventory_of, inventory_table
@@ -362,3 +362,22 @@ def test_names_go_on_beside_units_as_of_kestrel(tmp_path: Path) -> None:
 def test_the_name_of_a_species_is_below_its_genus(tmp_path: Path) -> None:
     rows = 'x,y,dbh [cm],Genus,SpeciesName\n0,0,12,Inga,laurina\n5,0,12,Fagus,sylvatica\n'
     assert inventory(tmp_path, rows).species == ('Inga laurina', 'Fagus sylvatica')
+
+
+def test_a_record_begins_where_it_is_told(tmp_path: Path) -> None:
+    rows = ''.join(f'2026-10-14 11:59:{n:02},{n},0\n' for n in range(9))
+    path = written(tmp_path, 'time,u [m/s],v [m/s]\n' + rows)
+    whole, part = read_wind(path), read_wind(path, start=4.5)
+    assert part.epoch == (whole.epoch or 0.0) + 5.0
+    np.testing.assert_allclose(part.time, np.arange(4.0))
+    np.testing.assert_allclose(part.velocity[:, 0], np.arange(5.0, 9.0))
+    with pytest.raises(ParameterError, match='is out of range; use 0 to 8 s'):
+        read_wind(path, start=9.0)
+
+
+def test_a_given_unit_is_that_of_components_too(tmp_path: Path) -> None:
+    path = written(tmp_path, 'time,u,v\n0,36,0\n1,18,0\n')
+    wind = read_wind(path, speed_unit='km/h')
+    np.testing.assert_allclose(wind.velocity[:, 0], [10.0, 5.0])
+    assert 'speeds are taken in km/h, as given' in wind.notes
+    assert 'taken in m/s' in read_wind(path).notes[0]

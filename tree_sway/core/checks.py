@@ -57,8 +57,9 @@ def within(
     number = _float_of(value)
     if number is None or not low <= number <= high or (above and number == low):
         fault = 'is not a number' if number is None else 'is out of range'
-        lower = f'above {low:g}, up to' if above else f'{low:g} to'
-        cure = f'use {lower} {high:g} {unit}'.rstrip()
+        lower = f'above {low:g}' if above else f'{low:g}'
+        to = '' if math.isinf(high) else f'{", up" if above else ""} to {high:g}'
+        cure = f'use {lower}{to or " or more" * (not above)} {unit}'.rstrip()
         raise ParameterError(f'{value!r} {fault}', where=name, cure=cure)
     return number
 

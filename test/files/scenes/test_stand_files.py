@@ -124,7 +124,7 @@ def test_the_stand_of_the_package_has_a_thousand_trees():
 
 def test_a_column_that_is_not_used_is_named(tmp_path):
     path = written(tmp_path, 'x,y,species,height,owner\n0,0,oak,10,A\n9,0,oak,10,B\n')
-    assert open_scene(path).notes == ('columns that are not used: owner',)
+    assert open_scene(path).notes == ('height is taken as m', 'columns that are not used: owner')
 
 
 def test_grown_trees_have_roots_of_their_size(tmp_path):

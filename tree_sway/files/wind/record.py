@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import within
 from tree_sway.core.wind import FASTEST_WIND, WindConvention
 from tree_sway.drawn import Drawn
 from tree_sway.errors import FormatError
@@ -83,6 +84,18 @@ class WindRecord(Drawn):
     def with_note(self, note: str) -> WindRecord:
         """Return the record with one more note."""
         return replace(self, notes=(*self.notes, note))
+
+    def after(self, start: float) -> WindRecord:
+        """Return the record from a time after its first sample on [s]; wrong ones are errors."""
+        kept = self.time >= within('start', start, 0.0, self.duration, 's')
+        first = float(self.time[kept][0])
+        return replace(
+            self,
+            time=self.time[kept] - first,
+            velocity=self.velocity[kept],
+            epoch=None if self.epoch is None else self.epoch + first,
+            gust=None if self.gust is None else self.gust[kept],
+        )
 
     @property
     def duration(self) -> float:

@@ -23,7 +23,9 @@ EXAMPLES = ('canopy',)
 
 
 @of_file
-def read_wind(path: Path, /, format: str | None = None, **options: Any) -> WindRecord:  # noqa: A002
+def read_wind(
+    path: Path, /, format: str | None = None, start: float = 0.0, **options: Any  # noqa: A002
+) -> WindRecord:
     """
     Read a wind record.
 
@@ -33,6 +35,8 @@ def read_wind(path: Path, /, format: str | None = None, **options: Any) -> WindR
         Path of the file, or the folder of a bag, or one of `EXAMPLES`.
     format
         Name of the format; found from content and suffix if None.
+    start
+        Time after the first sample from which on the record is kept [s].
     **options
         Options of the reader of the format, such as ``topic`` or ``rate``.
 
@@ -50,6 +54,6 @@ def read_wind(path: Path, /, format: str | None = None, **options: Any) -> WindR
         raise FormatError('no such file', cure=guess)
     with expected(path, 'wind'):
         chosen = format_of(path, format, WIND_FORMATS, 'wind', folder='bag')
-        chosen.refuse_others(options, chosen.own_options)
+        chosen.refuse_others(options, ('start', *chosen.own_options))
         record: WindRecord = chosen.read(path, **options)
-        return record
+        return record.after(start) if start else record
