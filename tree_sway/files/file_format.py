@@ -13,6 +13,7 @@ from typing import Any
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.column_names import folded, is_named
 from tree_sway.files.foreign_file import foreign_file
+from tree_sway.files.table_file import filled_lines
 from tree_sway.files.text_file import read_head
 
 _POINTS = 8
@@ -70,8 +71,8 @@ def has_columns(*names: str) -> Callable[[str], bool]:
     wanted = set(map(folded, names))
 
     def recognise(head: str) -> bool:
-        lines = (line for line in head.splitlines() if line.strip() and not line.startswith('#'))
-        return wanted <= set(map(folded, re.split('[,;\t]', next(lines, ''))))
+        _, lines = filled_lines(head.splitlines())
+        return wanted <= set(map(folded, re.split('[,;\t]', ''.join(lines[:1]))))
 
     return recognise
 
@@ -129,7 +130,7 @@ def format_of(
 
 def _is_header_alone(head: str) -> bool:
     """Whether the beginning of a file is one row of cells, none of them a number."""
-    lines = [line for line in head.splitlines() if line.strip() and not line.startswith('#')]
+    _, lines = filled_lines(head.splitlines())
     if len(lines) != 1:
         return False
     has_cells = re.search('[,;\t]', lines[0]) is not None

@@ -99,7 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
         _write_moments(scene, arguments, moments, paths)
     elif suffix == '.html':
         _write_page(scene, arguments)
-    elif suffix in (*_USD, *_HINGED, MODEL_SUFFIX, NATIVE_SUFFIX) or (
+    elif suffix in (*_USD, *_HINGED, *_PREPARED) or (
         suffix == '.glb' and _is_to_sway(scene, arguments)
     ):
         _write_swaying(scene, arguments, suffix)
@@ -115,11 +115,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 _HINGED: dict[str, Callable[[SwaySimulator], str]] = {'.xml': mjcf_of_tree, '.sdf': sdf_of_tree}
+_PREPARED = {MODEL_SUFFIX: write_model, NATIVE_SUFFIX: write_native_model}
 _USD = ('.usda', '.usdz')
 _DRAWN = ('.glb', '.html', *_USD)
 """Formats to look at, in leaf if nothing else is asked for."""
 
-_FORMATS = (*SUFFIXES, MODEL_SUFFIX, NATIVE_SUFFIX, '.html', *_USD, *_HINGED, '.obj')
+_FORMATS = (*SUFFIXES, *_PREPARED, '.html', *_USD, *_HINGED, '.obj')
 
 
 def _write_moments(
@@ -162,11 +163,10 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             cure='convert the file of one of them; .html, .obj and .glb with a skin take all',
         )
     settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
-    if suffix in (MODEL_SUFFIX, NATIVE_SUFFIX):
+    if suffix in _PREPARED:
         with waiting('preparing the tree'):
             model = prepare(scene.tree, scene.species, solved(settings))
-        write = write_model if suffix == MODEL_SUFFIX else write_native_model
-        write(arguments.output, model)
+        _PREPARED[suffix](arguments.output, model)
         return
     with waiting('finding what sways'):
         simulator = make_simulator(scene.tree, scene.species, settings)

@@ -51,6 +51,8 @@ class SenderClock:
         """Ticks in a second; None until they are known."""
         self.problem = ''
         """Why no time can be told, and what to do; empty if it can, or not yet."""
+        self.jumps = 0
+        """Number of times that it was set anew."""
         self._backs: deque[float] = deque(maxlen=_MIXED)
         self._previous = self._arrival = -math.inf
         self._first = _NEVER
@@ -127,6 +129,7 @@ class SenderClock:
         self._jumped_at = min(self._jumped_at, arrival)
         if arrival - self._jumped_at < _PATIENCE:
             return False
+        self.jumps += 1
         self._jumped_at = math.inf
         self._begin(difference, arrival, stamp)
         return True

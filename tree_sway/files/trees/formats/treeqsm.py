@@ -30,7 +30,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError, inside
 from tree_sway.files.file_format import contains, FileFormat
-from tree_sway.files.table_file import parse_columns
+from tree_sway.files.table_file import filled_lines, parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders, Trees
 from tree_sway.files.trees.cylinders.mat_file import numbers, read_mat, Variables
@@ -60,7 +60,7 @@ were averaged have axes of any length in an eighth of them (Jackson et al. 2019)
 
 def _is_text(head: str) -> bool:
     """Whether a file is a TreeQSM text, by its header, or by the width of its first rows."""
-    lines = [line for line in head.splitlines() if line.strip() and line[0] != '#'][:2]
+    lines = filled_lines(head.splitlines())[1][:2]
     if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
     numbers = [list(map(finite, _cells(line))) for line in lines]
