@@ -8,7 +8,7 @@ import { canvasTexture, discard, drawable, drawPart, ELEVATIONS, ROUND, use } fr
 /** Numbers per vertex. */
 const PER_VERTEX = 13;
 /** Alpha from which on a point of the picture is drawn, 0 to 255. */
-const SEEN = 0.35 * 255;
+const SEEN = 0.15 * 255;
 /** Slopes of the sides of the trapezium about a tree that are tried. */
 const SLOPES = [-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9];
 

@@ -292,7 +292,7 @@ void main() {
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y) + 0.35 * limb);
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.25, -0.8, 0.4) * (0.6 * sin(2.0 * flutter.y) - 0.7 * limb));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
-  vec3 shone = isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : toned(up + direct);
+  vec3 shone = isBaked > 0.5 ? vec3(0.5 + 0.5 * open) : toned(up + direct);
   vec3 whole = hue * flutter.w * shone;
   float clear = clearness(p);
   lit = clear * (1.0 - paint.a) * whole;
@@ -379,7 +379,7 @@ void main() {
   vec3 n = normalize(place.x * right + 0.8 * place.y * up + 0.6 * vec3(cos(e) * to, sin(e)));
   float shade = mix(box.w, 1.0, min(1.0, 1.25 * h)) * tree.z;
   float clear = clearness(p);
-  vec3 whole = clear * shade * toned(sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.3 + 0.8 * dot(n, light)));
+  vec3 whole = clear * shade * toned(sky * (0.9 + 0.3 * n.z) + sun * max(0.0, 0.7 + 1.4 * dot(n, light)));
   bool isShadow = shadowArea.w > 0.5;
   lit = isShadow ? vec3(0.0) : (1.0 - paint.a) * whole;
   veil = isShadow ? vec3(1.0) : (1.0 - clear) * horizon;
@@ -398,7 +398,7 @@ uniform sampler2D picture;
 out vec4 color;
 void main() {
   vec4 seen = texture(picture, at);
-  if (seen.a < 0.35) discard;
+  if (seen.a < 0.15) discard;
   color = vec4(seen.rgb * lit + max(seen.r, seen.g) * painted + veil, 1.0);
 }
 
