@@ -174,7 +174,9 @@ function leafyShoot(kind, rest, i) {
   const own = [0, 0, 0, 1];
   multiply(rest, STRIDE * carrier[i] + 4, [x, y, z, w], 0, own);
   const at = leafPlace(kind, rest, i);
-  const isHanging = hangs(lookOf(kind));
+  const look = lookOf(kind);
+  // Some shoots of a larch clothe the back of their limb.
+  const isHanging = hangs(look) && (look.form !== "bunches" || i % 3 > 0);
   // Some twigs hang straight down from where they grow.
   if (isHanging) turned(own, [1, 0, 0]).forEach((each, c) => (at[c] -= 0.5 * sizes[i] * (each + Number(c > 1))));
   return { segment: carrier[i], at, frame: isHanging ? DOWN : own, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };

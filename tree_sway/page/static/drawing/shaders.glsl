@@ -263,8 +263,8 @@ void main() {
   float own = 0.3;
   const float least = 0.3; // of the sun: few cards for many leaves hide more of it than these would
 #else
-  edge = min(1.0, 2.2 * abs(dot(flat_, back)));
-  float own = 0.4;
+  edge = min(1.0, 1.6 * abs(dot(flat_, back)));
+  float own = 0.5;
   const float least = 0.12;
 #endif
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
@@ -279,10 +279,10 @@ void main() {
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
   float sunny = mix(least, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
   // Light that other leaves have passed on is green.
-  vec3 up = sky * mix(vec3(0.3, 0.3, 0.14), vec3(1.07, 1.07, 0.85), near) * (0.62 + 0.38 * n.z) * (0.8 + 0.2 * turnedTo);
+  vec3 up = sky * mix(vec3(0.4, 0.42, 0.26), vec3(1.05, 1.07, 0.9), near) * (0.62 + 0.38 * n.z) * (0.8 + 0.2 * turnedTo);
   // Light through a leaf is yellow, and is seen most against the sun.
   vec3 through = vec3(1.4, 1.6, 0.5) * max(-side * dot(flat_, light), 0.0) * (0.9 - 0.5 * turnedTo);
-  vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.1 + 2.4 * max(0.8 * across + 0.2, 0.0)) + through);
+  vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.13 + 2.2 * max(0.75 * across + 0.25, 0.0)) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 spot = 9.0 * shadowTop * p;
@@ -290,7 +290,7 @@ void main() {
   vec3 hue = dulled * (1.0 + 0.05 * sin(9.0 * flutter.y) + vec3(0.05, 0.0, -0.06) * (sin(5.0 * flutter.y) + limb));
   hue += (0.5 * (flutter.w - 1.0) + 0.12 * max(0.0, near - 0.7)) * vec3(0.35, 0.2, -0.2);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y) + 0.35 * limb);
-  hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.25, -0.8, 0.4) * (0.6 * sin(2.0 * flutter.y) - 0.7 * limb));
+  hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.25, -0.8, 0.4) * (0.35 * sin(2.0 * flutter.y) - 0.4 * limb));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
   vec3 shone = isBaked > 0.5 ? vec3(0.5 + 0.5 * open) : toned(up + direct);
   vec3 whole = hue * flutter.w * shone;
@@ -330,12 +330,12 @@ void main() {
   // Sooner in a large picture, which has many leaves, than in that of a single one.
   float points = float(textureSize(leaves, 0).x);
   float mixed = min(1.0, 0.22 * max(0.0, log2(7e-4 * points * points * small)));
-  float least = mix(0.5, 0.12 + 0.5 * chance, mixed);
+  float least = mix(0.5, 0.1 + 0.68 * chance, mixed);
   float shown = edge * leaf.a;
   // The rim of a leaf covers a part of its pixel.
-  float cover = clamp(0.5 + (shown - least) / max(fwidth(shown), 0.02 + 0.8 * mixed), 0.0, 1.0);
+  float cover = clamp(0.5 + (shown - least) / max(fwidth(shown), 0.02 + 0.6 * mixed), 0.0, 1.0);
   if (cover < 0.05) discard;
-  float own = 1.0 + 0.2 * (fract(17.0 * chance) - 0.5) * mixed;
+  float own = 1.0 + 0.34 * (fract(17.0 * chance) - 0.5) * mixed;
   color = vec4(leaf.rgb * own / max(leaf.a, 0.01) * lit + veil, cover);
 #endif
 }

@@ -56,7 +56,7 @@ export function leavesAlong(look, long) {
  * of small cards, and its size [px] */
 export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isSpread = false, size } = {}) {
   const share = leafShare(look, along, isFlowering);
-  const pixels = size ?? (along > 1 ? 512 : look.form in IN_LEAFLETS ? 192 : 128);
+  const pixels = size ?? (along > 1 ? 512 : look.form in IN_LEAFLETS ? 320 : 128);
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.8);
@@ -226,11 +226,11 @@ class Brush {
   candle() {
     const { random } = this;
     const [middle, half] = [0.5 * (1 + 1 / LEAF_SHARE), 0.3 * (1 / LEAF_SHARE - 1)];
-    for (let i = 0; i < 240; i++) {
+    for (let i = 0; i < 150; i++) {
       const up = random();
       const reach = half * (1 - up) ** 0.6;
       const color = css(places.candle[i % 5], 0.75 + 0.25 * random());
-      this.at(middle + reach * (2 * random() - 1), 0.38 - 0.78 * up, 0, 1, () => this.line("0V.02", 0.026, color));
+      this.at(middle + reach * (2 * random() - 1), 0.38 - 0.78 * up, 0, 1, () => this.line("0V.018", 0.02, color));
     }
   }
 
