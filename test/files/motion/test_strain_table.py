@@ -52,7 +52,8 @@ def test_a_published_form_is_read(tmp_path: Path, form: str) -> None:
         ('time,n,e\n0,1.5,2\n1,-40,8\n2,9,1\n', 'no strain of wood'),
         ('time,n [mV],e [mV]\n0,1e-4,2e-4\n', "unknown unit 'mV'"),
         ('time,n,e\nx,1e-4,2e-4\n', 'no time in'),
-        ('time,n,e\n', 'no time in'),  # a header alone
+        ('time,n,e\n', 'no header and rows'),
+        ('foo,bar,baz\n', 'no time in'),
         ('time,n,e\n0,,2e-4\n1,,1e-4\n', 'a column without numbers'),
     ],
 )

@@ -54,6 +54,6 @@ def read_wind(
         raise FormatError('no such file', cure=guess)
     with expected(path, 'wind'):
         chosen = format_of(path, format, WIND_FORMATS, 'wind', folder='bag')
-        chosen.refuse_others(options, ('start', *chosen.own_options))
+        chosen.refuse_others(options, (*chosen.own_options, 'start'))
         record: WindRecord = chosen.read(path, **options)
         return record.after(start) if start else record
