@@ -279,7 +279,7 @@ void main() {
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
   float sunny = mix(least, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
   // Light that other leaves have passed on is green.
-  vec3 up = sky * mix(vec3(0.46, 0.47, 0.32), vec3(1.0, 1.0, 0.84), near) * (0.62 + 0.38 * n.z) * (0.8 + 0.2 * turnedTo);
+  vec3 up = sky * mix(vec3(0.46, 0.47, 0.32), vec3(1.0, 1.0, 0.84), near) * (0.72 + 0.28 * n.z) * (0.85 + 0.15 * turnedTo);
   // Light through a leaf is yellow, and is seen most against the sun.
   vec3 through = vec3(1.4, 1.6, 0.5) * max(-side * dot(flat_, light), 0.0) * (0.9 - 0.5 * turnedTo);
   vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.13 + 2.2 * max(0.75 * across + 0.25, 0.0)) + through);

@@ -29,7 +29,7 @@ const {
 } = /** @type {Record<string, any>} */ (numbers.pictures);
 
 /** Length at which a leaf or leaflet is drawn [m]. @param {Look} look */
-export const drawnLeaf = ({ form, has_needles: hasNeedles, leaf_size: size }) => size * (hasNeedles || form in IN_LEAFLETS ? 1 : DRAWN);
+export const drawnLeaf = ({ form, has_needles: hasNeedles, leaf_size: size }) => size * (hasNeedles || form === "digitate" ? 1 : DRAWN);
 
 /** Length of a drawn leaf with all its leaflets [m]. @param {Look} look */
 export const wholeLeaf = (look) => drawnLeaf(look) * (IN_LEAFLETS[look.form] ?? 1);
