@@ -24,7 +24,11 @@ EXAMPLES = ('canopy',)
 
 @of_file
 def read_wind(
-    path: Path, /, format: str | None = None, start: float = 0.0, **options: Any  # noqa: A002
+    path: Path,
+    /,
+    format: str | None = None,
+    start: float = 0.0,
+    **options: Any,  # noqa: A002
 ) -> WindRecord:
     """
     Read a wind record.
