@@ -26,9 +26,9 @@ EXAMPLES = ('canopy',)
 def read_wind(
     path: Path,
     /,
-    format: str | None = None,
+    format: str | None = None,  # noqa: A002
     start: float = 0.0,
-    **options: Any,  # noqa: A002
+    **options: Any,
 ) -> WindRecord:
     """
     Read a wind record.
