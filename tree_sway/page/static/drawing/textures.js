@@ -9,6 +9,8 @@ const {
   ALONG,
   /** Length of a drawn leaf over that of a real one, so that one sees its form from afar. */
   DRAWN,
+  /** Length of a whole leaf that is drawn as it is [m]. */
+  LARGE,
   /** Length of a whole leaf in leaflets. */
   IN_LEAFLETS,
   /** Width over length of a leaf with leaflets. */
@@ -20,6 +22,8 @@ const {
   /** Short needles: gap between side shoots over the length of a shoot, and the least of the picture; length of a needle over the
    * gap; how far side shoots lean from their axis, and needles [rad]; the distance of bunches. */
   NEEDLES,
+  /** Length of the part of a shoot that long needles clothe, over their length. */
+  BRUSH,
   /** Number of layers of leaves; the lowest is shaded by the others. */
   LAYERS,
   /** Length of the midrib of a leaf or leaflet, and its veins. */
@@ -28,8 +32,9 @@ const {
   BARK_WIDE,
 } = /** @type {Record<string, any>} */ (numbers.pictures);
 
-/** Length at which a leaf or leaflet is drawn [m]. @param {Look} look */
-export const drawnLeaf = ({ form, has_needles: hasNeedles, leaf_size: size }) => size * (hasNeedles || form === "digitate" ? 1 : DRAWN);
+/** Length at which a leaf or leaflet is drawn [m]: large leaves are seen from afar as they are. @param {Look} look */
+export const drawnLeaf = ({ form, has_needles: hasNeedles, leaf_size: size }) =>
+  size * (hasNeedles || size * (IN_LEAFLETS[form] ?? 1) > LARGE ? 1 : DRAWN);
 
 /** Length of a drawn leaf with all its leaflets [m]. @param {Look} look */
 export const wholeLeaf = (look) => drawnLeaf(look) * (IN_LEAFLETS[look.form] ?? 1);
@@ -56,10 +61,11 @@ export function leavesAlong(look, long) {
  * of small cards, and its size [px] */
 export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isSpread = false, size } = {}) {
   const share = leafShare(look, along, isFlowering);
-  const pixels = size ?? (along > 1 ? 512 : look.form in IN_LEAFLETS ? 320 : 128);
+  const pixels = size ?? (along > 1 ? 512 : look.form in IN_LEAFLETS ? 512 : 128);
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.8);
+  else if (look.form === "tufts") (along < 5 ? places.tuft : places.tufts).forEach((end) => brush.tuft(end));
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
   else brush.spray(1 / along, isSpread ? 0.65 : 0.75);
@@ -204,6 +210,28 @@ class Brush {
     }
   }
 
+  /** A shoot with long needles on every side, few enough that one sees between them from afar: dark ones
+   * below, lighter ones above. @param {number[]} end its place, the longest needle, and how many are on each side of the picture */
+  tuft([x, across, long, count]) {
+    const { look: { twig }, random, half } = this;
+    const y = half * across;
+    const heading = Math.atan2(0.6 * y, 0.4);
+    this.at(0, 0, Math.atan2(y, x), 1, () => this.line(Math.hypot(x, y), 0.016, css(twig, 0.8)));
+    for (const isUpper of [false, true]) {
+      for (let i = 0; i < count; i++) {
+        // Along the shoot, so that it is a brush, and no star, which would be a leaf of a maple.
+        const before = Math.min(BRUSH * long, 0.8 * x) * random();
+        const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
+        const turn = heading + (i % 2 ? 1 : -1) * (0.2 + 0.9 * random());
+        const room = (half - Math.abs(fromY)) / Math.abs(Math.sin(turn));
+        // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
+        const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
+        const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1);
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.009, color));
+      }
+    }
+  }
+
   /** One leaf from its stalk on. @param {number} long @param {number} light */
   leaf(long, light) {
     const { context, look } = this;
@@ -237,7 +265,7 @@ class Brush {
   /** Leaflets in pairs along a stalk, or like fingers at its end. @param {() => void} blade paints one
    * @param {string} color of the stalk */
   leaflets(blade, color) {
-    const { look: { form, slenderness, leaf_size: size }, random } = this;
+    const { look: { form }, random } = this;
     if (form === "digitate") {
       this.line(0.36, 0.016, color);
       for (const [lean, share] of places.digitate) {
@@ -245,15 +273,14 @@ class Brush {
       }
       return;
     }
-    // The larger a leaflet is, the fewer there are.
-    const pairs = size * slenderness > 0.035 ? 3 : 4;
-    const long = 1.1 / pairs;
+    // Four pairs, and one at the end.
+    const long = 0.275;
     this.line(0.98 - long, 0.02, color);
-    for (let i = 0; i <= 2 * pairs; i++) {
+    for (let i = 0; i < 9; i++) {
       const pair = Math.floor(i / 2);
-      const lean = pair === pairs ? 0 : (i % 2 ? 1 : -1) * (1 - 0.06 * pair) + 0.15 * (random() - 0.5);
-      const along = 0.16 + (0.8 - long) * Math.min(1, pair / (pairs - 1));
-      this.at(along, 0, lean, long * (0.75 + (0.25 * pair) / pairs), blade);
+      const lean = pair > 3 ? 0 : (i % 2 ? 1 : -1) * (1 - 0.06 * pair) + 0.15 * (random() - 0.5);
+      const along = 0.16 + 0.175 * Math.min(3, pair);
+      this.at(along, 0, lean, long * (0.75 + 0.06 * pair), blade);
     }
   }
 }
