@@ -81,15 +81,14 @@ def test_without_wind_the_tree_leans_as_in_the_pictures(
             publisher.publish(make(newest[0]))
         return tips_of_poses(twin.tree, twin.place())[0] - rest
 
-    observer.until(lambda: moved()[0] > 0.8 * lean[0], f'a lean of {lean[0]:.2f} m')
+    # While pictures lead it: the sway of a busy machine's few pictures a second is told roughly.
+    observer.until(lambda: abs(moved()[0] - lean[0]) < 0.2 * lean[0], f'a lean of {lean[0]:.2f} m')
     name = f'solver: camera {topic}'
     observer.until(
         lambda: moved() is not None and (status := statuses(name)) and status.level[0] == OK,
         'a report',
     )
     assert 'points on the tree' in statuses(name).message
-    # The solver steps in its own thread, and in the middle of a step nothing is corrected.
-    observer.until(lambda: abs(moved()[0] - lean[0]) < 0.3 * lean[0], 'the lean of the pictures')
 
 
 def test_bad_pictures_are_counted_with_their_cause(compose, observer, leaning, statuses):
