@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A camera over ROS: the tree follows its pictures, and bad ones are refused and counted."""
 
+from itertools import cycle
 import time
 
 import pytest
@@ -71,17 +72,15 @@ def test_without_wind_the_tree_leans_as_in_the_pictures(
     publisher = observer.publisher(IMAGE, kind, name=topic)
     twin = solver.simulator
     rest = tips_of_poses(twin.tree, twin.place())[0]
-    sent, due = iter(pictures), [0.0]
-    newest = [pictures[0]]
+    sent, due = cycle([*pictures, *pictures[::-1]]), [0.0]
 
     def moved():
         if time.monotonic() >= due[0]:
             due[0] = time.monotonic() + PERIOD
-            newest[0] = next(sent, newest[0])
-            publisher.publish(make(newest[0]))
+            publisher.publish(make(next(sent)))
         return tips_of_poses(twin.tree, twin.place())[0] - rest
 
-    # While pictures lead it: the sway of a busy machine's few pictures a second is told roughly.
+    # To and fro until it follows: few pictures a second, as of a busy machine, tell it roughly.
     observer.until(lambda: abs(moved()[0] - lean[0]) < 0.2 * lean[0], f'a lean of {lean[0]:.2f} m')
     name = f'solver: camera {topic}'
     observer.until(
