@@ -51,3 +51,18 @@ def test_three_numbers_need_not_be_finite():
 def test_what_is_not_three_numbers_is_refused(vector):
     with pytest.raises(ParameterError, match=r'wind: .* is not three numbers'):
         three_numbers('wind', vector)
+
+
+@pytest.mark.parametrize(
+    ('high', 'above', 'allowed'),
+    [
+        (5.0, False, '0 to 5 s'),
+        (5.0, True, 'above 0, up to 5 s'),
+        (math.inf, False, 'at least 0 s'),
+        (math.inf, True, 'above 0 s'),
+    ],
+)
+def test_a_refused_number_is_told_its_range(high: float, above: bool, allowed: str) -> None:
+    with pytest.raises(ParameterError) as error:
+        within('x', -1.0, 0.0, high, 's', above=above)
+    assert error.value.cure == f'use {allowed}'

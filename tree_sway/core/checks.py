@@ -57,9 +57,11 @@ def within(
     number = _float_of(value)
     if number is None or not low <= number <= high or (above and number == low):
         fault = 'is not a number' if number is None else 'is out of range'
-        lower = f'above {low:g}' if above else f'{low:g}'
-        to = '' if math.isinf(high) else f'{", up" if above else ""} to {high:g}'
-        cure = f'use {lower}{to or " or more" * (not above)} {unit}'.rstrip()
+        if math.isinf(high):
+            allowed = f'above {low:g}' if above else f'at least {low:g}'
+        else:
+            allowed = f'above {low:g}, up to {high:g}' if above else f'{low:g} to {high:g}'
+        cure = f'use {allowed} {unit}'.rstrip()
         raise ParameterError(f'{value!r} {fault}', where=name, cure=cure)
     return number
 

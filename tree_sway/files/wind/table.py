@@ -91,7 +91,9 @@ def read_table_wind(
         convention = direction_convention or 'to'
     else:
         found = table.find('wind_speed')
-        taken = [*(time or ([],))[0], *([found.index] if found else [])]  # DD may be a day
+        taken = list(time[0]) if time else []  # of which DD is a day and no direction
+        if found is not None:
+            taken.append(found.index)
         from_where, usual = _direction(table, taken, direction)
         _refuse_missing(whole, time, *(places[:2] or (found, from_where)))
         assert found is not None
