@@ -31,7 +31,7 @@ def objects() -> dict[str, object]:
         'SwaySimulator': simulator,
         'AdaptiveSimulator': sway.make_simulator(file, model='auto'),
         'SceneSimulator': sway.Scene(placed[:3], name='row').simulator(model=3),
-        'SwayRecord': sway.simulate(file, WIND, model=3),
+        'SwayRecord': sway.simulate(file, WIND, model=3, rate=60.0),
         'WindRecord': WindRecord(np.arange(30.0), WIND, 'wind.csv'),
         'MotionRecord': MotionRecord(np.arange(30.0), WIND, None, None, 'imu.csv'),
         'TreeState': simulator.state(),

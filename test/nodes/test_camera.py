@@ -80,7 +80,7 @@ def test_without_wind_the_tree_leans_as_in_the_pictures(
             publisher.publish(make(next(sent)))
         return tips_of_poses(twin.tree, twin.place())[0] - rest
 
-    # Again and again until it follows: few pictures a second, as of a busy machine, tell it roughly.
+    # Shown until it follows: few pictures a second, as of a busy machine, tell it roughly.
     observer.until(lambda: abs(moved()[0] - lean[0]) < 0.2 * lean[0], f'a lean of {lean[0]:.2f} m')
     name = f'solver: camera {topic}'
     observer.until(

@@ -68,7 +68,7 @@ def test_chosen_branches_are_named(fork):
 
 
 def test_the_record_as_columns(fork):
-    record = simulate(fork(), STEADY[:7], model=12)
+    record = simulate(fork(), STEADY[:7], model=12, rate=60.0)
     text = record.to_csv()
     assert text.startswith('time [s],wind_x [m/s],wind_y [m/s],wind_z [m/s],moment_x [N m]')
     read = np.loadtxt(io.StringIO(text), delimiter=',', skiprows=1)
@@ -80,7 +80,9 @@ def test_the_record_as_columns(fork):
     assert (rows[:, 7:10] == record.tips[:, 0]).all()
     assert len(repr(record)) < 120
     assert 'mean wind 3 m/s, tip of' in repr(record)
-    assert repr(simulate(fork(), STEADY[:5], branches=[], model=12)).endswith('mean wind 3 m/s')
+    assert repr(simulate(fork(), STEADY[:5], branches=[], model=12, rate=60.0)).endswith(
+        'mean wind 3 m/s'
+    )
 
 
 def test_what_was_made_up_about_the_wind_is_said_of_the_sway(fork):
@@ -91,7 +93,7 @@ def test_what_was_made_up_about_the_wind_is_said_of_the_sway(fork):
 def test_a_data_frame_has_its_columns(fork, monkeypatch):
     frames = SimpleNamespace(DataFrame=dict)  # of pandas, which the tests do not install
     monkeypatch.setitem(sys.modules, 'pandas', frames)
-    record = simulate(fork(), STEADY[:7], model=12)
+    record = simulate(fork(), STEADY[:7], model=12, rate=60.0)
     frame = record.to_dataframe()
     assert list(frame) == list(record.columns())
     assert frame['time [s]'] == pytest.approx(record.time)
@@ -181,9 +183,9 @@ def test_a_record_says_that_steps_stayed_clamped(fork, monkeypatch):
     from tree_sway.core.setup import load_table
 
     wind = np.tile((9.0, 1.0, 0.0), (200, 1))
-    assert simulate(fork(), wind, model=12, cache=None).notes == ()
+    assert simulate(fork(), wind, model=12, rate=60.0, cache=None).notes == ()
     monkeypatch.setattr(load_table, '_MOST_ENERGY', 1e-9)
-    record = simulate(fork(), wind, model=12, cache=None)
+    record = simulate(fork(), wind, model=12, rate=60.0, cache=None)
     assert 'stayed clamped' in record.notes[0]
 
 
@@ -204,3 +206,26 @@ def test_the_share_that_is_done_is_told() -> None:
     tree = open_tree('benjamina')
     simulate(tree, np.ones((5, 3)), model=3, progress=told.append)
     assert told == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0])
+
+
+def test_a_wind_of_steps_without_their_rate_is_noted(fork):
+    record = simulate(fork(), STEADY, model=2)
+    assert any('60 means per second' in note for note in record.notes)
+    assert not any(
+        'per second' in note for note in simulate(fork(), STEADY, model=2, rate=60).notes
+    )
+
+
+def test_a_band_without_sensors_says_about_which_motion_it_lies(fork):
+    of_one_wind, of_gusts = (
+        simulate(fork(), STEADY, model=2, rate=60.0, band=True, crown_coherence=coherence).notes
+        for coherence in (1.0, 0.2)
+    )
+    assert any('crown_coherence 0.3' in note for note in of_one_wind)
+    assert not any('crown_coherence' in note for note in of_gusts)
+
+
+def test_a_record_says_whether_its_tree_was_in_leaf(fork):
+    told = [str(simulate(fork(), STEADY, model=2, in_leaf=leaves)) for leaves in (False, True)]
+    assert ', bare, ' in told[0]
+    assert ', in leaf, ' in told[1]

@@ -55,7 +55,7 @@ def of_sway(record: SwayRecord) -> Figure:
     """Draw the wind and the motion of the first tip of a record."""
     name, *_ = record.branch_names or ('',)
     tip = record.tips[:, 0] if name else np.zeros_like(record.wind)
-    title = f'{record.tree}, model {record.model}, tip of {name}'
+    title = f'{record.tree}, {record.strength.season}, model {record.model}, tip of {name}'
     return wind_and_tip(record.time, record.wind, tip, title)
 
 

@@ -36,6 +36,7 @@ from tree_sway.core.wind import (
     WindGate,
     WindIntake,
 )
+from tree_sway.core.wind.gusts import USUAL_COHERENCE
 from tree_sway.errors import ParameterError
 from tree_sway.simulation.interpolated import interpolated_means
 from tree_sway.simulation.strength_use import StrengthGauge, StrengthUse
@@ -49,6 +50,13 @@ _MAX_STEPS = 6_000_000
 """Largest number of steps, all of which are in the memory: more than a day at 60 Hz."""
 _CHUNK = 4096
 """Number of samples of a record that are plain numbers at a time."""
+USUAL_RATE = 60.0
+"""Steps per second, unless they are given [Hz]."""
+_AT_USUAL_RATE = f'the wind is taken as {USUAL_RATE:g} means per second; rate=20 if it has 20'
+_EXPECTED = (
+    'the band lies about the motion that is expected in gusts which do not reach all of the crown '
+    f'at once (crown_coherence {USUAL_COHERENCE:g}): less than in one wind'
+)
 _UNCHECKED = 'a clock that is up to 1 s off is hardly told: synchronise those of wind and motion'
 
 
@@ -84,7 +92,7 @@ def simulate(
     tree: Tree | GrownTree,
     wind: WindSamples | ArrayLike,
     *,
-    rate: float = 60.0,
+    rate: float | None = None,
     seconds: float | None = None,
     branches: Sequence[int] | None = None,
     settings: Settings | None = None,
@@ -105,7 +113,7 @@ def simulate(
         Record with ``time`` and ``velocity``, which passes the gate and decays in gaps like a live
         wind (`Run`); or the mean wind of each step in [m/s], (t, 3).
     rate
-        Steps per second in [Hz].
+        Steps per second in [Hz]; 60 if None, which a note says for a wind of steps.
     seconds
         Duration of the simulation in [s]; that of the wind if None.
     branches
@@ -136,7 +144,9 @@ def simulate(
         A tree that buckles.
 
     """
-    wind = _checked(tree_and_species(tree)[0], wind, rate, seconds, branches)
+    wind = _checked(
+        tree_and_species(tree)[0], wind, USUAL_RATE if rate is None else rate, seconds, branches
+    )
     rig = Rig(tree, settings, motion=motion, film=film, band=band, **changes)
     return rig.run(wind, rate=rate, seconds=seconds, branches=branches, progress=progress)
 
@@ -170,6 +180,8 @@ class Rig:
         """The same simulator, if it follows sensors or has a band."""
         self.film = film
         self.filmed: FilmedTree | None = None
+        in_one_wind = not chosen.is_far and chosen.crown_coherence > USUAL_COHERENCE
+        self._is_expected = band and in_one_wind and not motion and film is None
         observed: dict[str, Any] = {
             'settings': chosen,
             'at': {each.name: each.at for each in motion},
@@ -193,7 +205,7 @@ class Rig:
         self,
         wind: WindSamples | ArrayLike,
         *,
-        rate: float = 60.0,
+        rate: float | None = None,
         seconds: float | None = None,
         branches: Sequence[int] | None = None,
         strained: int | None = None,
@@ -203,6 +215,8 @@ class Rig:
         tree = self.tree
         simulator = self.simulator
         observed = self.observed
+        of_steps = rate is None and not isinstance(wind, WindSamples)
+        rate = USUAL_RATE if rate is None else rate
         wind = _checked(tree, wind, rate, seconds, branches)
         chosen = _chosen(tree, branches)
         if observed is not None:
@@ -256,7 +270,9 @@ class Rig:
             per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1), strain, gauge.use(),
             (
                 *filter(None, [short]),
+                *([_AT_USUAL_RATE] if of_steps else []),
                 *getattr(wind, 'notes', ()),
+                *([_EXPECTED] if self._is_expected else []),
                 *_doubts(simulator, before),
                 *_other_times(self.motion, count / rate),
                 *_said_by_sensors(observed),

@@ -78,6 +78,11 @@ class StrengthUse:
         roots = self.roots.tolist() if np.isfinite(self.roots).all() else None
         return {**vars(self), 'wood': self.wood.tolist(), 'roots': roots}
 
+    @property
+    def season(self) -> str:
+        """Whether the tree was in leaf or bare, in words."""
+        return 'in leaf' if self.in_leaf else 'bare'
+
     def __str__(self) -> str:
         """Return both with their bands as one line, and whether the tree is in leaf."""
         wood, roots = (
@@ -86,8 +91,7 @@ class StrengthUse:
         )
         roots = roots if np.isfinite(self.roots).all() else 'unknown in a pot'
         place = f'{self.branch}, {self.height:.2g} m up'
-        season = 'in leaf' if self.in_leaf else 'bare'
-        return f'strength used: wood {wood} in {place}; roots {roots}; {season}'
+        return f'strength used: wood {wood} in {place}; roots {roots}; {self.season}'
 
 
 class StrengthGauge:

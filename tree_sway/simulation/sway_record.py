@@ -119,7 +119,8 @@ class SwayRecord(Drawn):
         """Name tree, model, length, wind and the largest motion of the first tip on one line."""
         speed = float(np.linalg.norm(self.wind, axis=1).mean())
         said = (
-            f'SwayRecord of {self.tree}, model {self.model}: {len(self.time)} steps, '
+            f'SwayRecord of {self.tree}, {self.strength.season}, model {self.model}: '
+            f'{len(self.time)} steps, '
             f'{self.time[-1]:.4g} s, mean wind {speed:.3g} m/s'
         )
         if not self.branch_names:
