@@ -218,10 +218,9 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   const add = (segment, along) => {
     const o = STRIDE * segment;
     const own = Array.from(rest.subarray(o + 4, o + 8));
-    // Those of a weeping bough begin above it; every second one clothes its back.
-    const isHanging = isWeeping && shoots.length % 2 > 0;
-    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] - (isHanging && c > 1 ? 0.25 * size : 0));
-    shoots.push({ segment, at, frame: isHanging ? DOWN : own, size, phase: 2.4 * shoots.length, frequency: arrays.leaf_frequency[0], share });
+    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c]);
+    // Every second one of a weeping bough clothes its back.
+    shoots.push({ segment, at, frame: isWeeping && shoots.length % 2 ? DOWN : own, size, phase: 2.4 * shoots.length, frequency: arrays.leaf_frequency[0], share });
   };
   for (const branch of branches) {
     const end = first[branch + 1] - 1;

@@ -328,7 +328,7 @@ export class Scene {
     const relief = look.bark_pattern;
     const own = (this.isAutumn && look.autumn) || look.green;
     const unturned = look.green.map((each, c) => each / own[c]);
-    const dulled = OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt((look.has_needles ? 0.075 : 0.088) / own[1]) * (1 + Math.max(1, (each * own[1]) / own[c])));
+    const dulled = OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.084 / own[1]) * (1 + Math.max(1, (each * own[1]) / own[c])));
     const foot = feet[relief] ?? { color: barkColor, height: 0 };
     if (!pictures.has(relief)) pictures.set(relief, pictureTexture(gl, barkPicture(relief), this.isSlow, true));
     return {
