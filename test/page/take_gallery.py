@@ -35,16 +35,16 @@ from tree_sway.stream.controls import ControlPanel
 
 STAND = Path(__file__).parents[2] / 'config' / 'stand.yaml'
 GROWN = {
-    'oak': '--height 18 --diameter 0.9 --seed 3',
+    'oak': '--height 18 --diameter 1.1 --seed 5',
     'birch': '--height 16',
     'spruce': '--height 20 --diameter 0.55 --seed 1',
     'fir': '--height 20 --diameter 0.6 --seed 3',
     'pine': '--height 18 --diameter 0.5 --seed 1',
-    'lime': '--height 18 --diameter 0.6 --seed 1',
-    'beech': '--height 20 --diameter 0.7 --seed 5',
-    'horse_chestnut': '--height 16 --diameter 0.7 --seed 1',
-    'willow': '--height 12 --diameter 0.6 --seed 1',
-    'walnut': '--height 8',
+    'lime': '--height 18 --diameter 0.75 --seed 2',
+    'beech': '--height 20 --diameter 0.9 --seed 1',
+    'horse_chestnut': '--height 16 --diameter 0.85 --seed 1',
+    'willow': '--height 12 --diameter 0.95 --seed 1',
+    'walnut': '--height 8 --diameter 0.32 --seed 2',
 }
 """Individuals by their options of `tree-sway grow`: most have stood in the open all their life."""
 SQUARE = 1200, 1200

@@ -125,7 +125,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       const foot = end.map((each, c) => each - origin[c]);
       for (const { place, normal, u, v } of candle) {
         values.push(row, ...turned(back, place.map((each, c) => each + foot[c])), ...ORIGIN);
-        values.push(...turned(back, normal), ...light, ...flutter, open, 1, leaves + (1 - leaves) * v, u);
+        values.push(...turned(back, normal), ...turned(back, [0.7, 0.3, 2]), ...flutter, 1, 0.85, leaves + (1 - leaves) * v, u);
       }
     }
   }
@@ -218,9 +218,9 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   const add = (segment, along) => {
     const o = STRIDE * segment;
     const own = Array.from(rest.subarray(o + 4, o + 8));
-    // Those of a weeping bough begin above it and clothe its back.
-    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] - (isWeeping && c > 1 ? 0.25 * size : 0));
-    shoots.push({ segment, at, frame: isWeeping ? DOWN : own, size, phase: 2.4 * shoots.length, frequency: arrays.leaf_frequency[0], share });
+    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c]);
+    // Every second one of a weeping bough clothes its back.
+    shoots.push({ segment, at, frame: isWeeping && shoots.length % 2 ? DOWN : own, size, phase: 2.4 * shoots.length, frequency: arrays.leaf_frequency[0], share });
   };
   for (const branch of branches) {
     const end = first[branch + 1] - 1;

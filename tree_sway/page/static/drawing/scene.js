@@ -43,7 +43,7 @@ const [TILES, FEW_KINDS] = [[192, 128], 16];
 const [GLOSS, GLOSS_OF_MANY] = [0.2, 0.03];
 /** Colour of a crown of leaves or of needles in the open, over its green; where a leaf is more vivid it is
  * half-way between, and less bright or dark. */
-const OPEN_GREENS = [[0.86, 1, 0.56], [0.84, 1, 0.62]];
+const OPEN_GREENS = [[0.82, 1, 0.6], [0.84, 1, 0.62]];
 /** First and last row of no branch. */
 const NONE = [-2, -2];
 /** Months in which a horse chestnut flowers, from 1. */
@@ -328,7 +328,7 @@ export class Scene {
     const relief = look.bark_pattern;
     const own = (this.isAutumn && look.autumn) || look.green;
     const unturned = look.green.map((each, c) => each / own[c]);
-    const dulled = OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.1 / own[1]) * (1 + Math.max(1, (each * own[1]) / own[c])));
+    const dulled = OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.084 / own[1]) * (1 + Math.max(1, (each * own[1]) / own[c])));
     const foot = feet[relief] ?? { color: barkColor, height: 0 };
     if (!pictures.has(relief)) pictures.set(relief, pictureTexture(gl, barkPicture(relief), this.isSlow, true));
     return {

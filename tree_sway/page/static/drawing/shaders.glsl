@@ -92,7 +92,7 @@ vec4 meadow(vec2 p, float bare, float pixel) {
   vec3 grass = mix(vec3(0.3, 0.39, 0.18), vec3(0.49, 0.5, 0.29), dry);
   grass = mix(grass, vec3(0.27, 0.38, 0.2), 0.7 * smoothstep(0.5, 0.75, noise(p / 3.7 + 40.0)) / (1.0 + 0.3 * pixel));
   grass *= 0.8 + 0.4 * clumps;
-  return vec4(mix(grass, vec3(0.42, 0.36, 0.27) * (0.8 + 0.4 * clumps), 0.75 * bare), clumps * (1.0 - 0.5 * dry));
+  return vec4(mix(grass, vec3(0.37, 0.34, 0.23) * (0.8 + 0.4 * clumps), 0.5 * bare), clumps * (1.0 - 0.5 * dry));
 }
 
 #part lit noise
@@ -279,7 +279,7 @@ void main() {
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
   float sunny = mix(least, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
   // Light that other leaves have passed on is green.
-  vec3 up = sky * mix(vec3(0.46, 0.47, 0.32), vec3(1.0, 1.0, 0.84), near) * (0.72 + 0.28 * n.z) * (0.85 + 0.15 * turnedTo);
+  vec3 up = sky * mix(vec3(0.54, 0.55, 0.38), vec3(1.1, 1.1, 0.9), near) * (0.72 + 0.28 * n.z) * (0.85 + 0.15 * turnedTo);
   // Light through a leaf is yellow, and is seen most against the sun.
   vec3 through = vec3(1.4, 1.6, 0.5) * max(-side * dot(flat_, light), 0.0) * (0.9 - 0.5 * turnedTo);
   vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.13 + 2.2 * max(0.75 * across + 0.25, 0.0)) + through);
@@ -287,7 +287,7 @@ void main() {
   // autumn shaded leaves, and some others, turn last.
   vec3 spot = 9.0 * shadowTop * p;
   float limb = 0.5 * (sin(spot.x + 1.7 * spot.z) + sin(spot.y - 1.3 * spot.z + 1.0));
-  vec3 hue = dulled * (1.0 + 0.05 * sin(9.0 * flutter.y) + vec3(0.05, 0.0, -0.06) * (sin(5.0 * flutter.y) + limb));
+  vec3 hue = dulled * (1.0 + 0.05 * sin(9.0 * flutter.y) + vec3(0.05, 0.0, -0.06) * (0.7 * sin(5.0 * flutter.y) + 0.3 * limb));
   hue += (0.5 * (flutter.w - 1.0) + 0.12 * max(0.0, near - 0.7)) * vec3(0.35, 0.2, -0.2);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y) + 0.35 * limb);
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.25, -0.8, 0.4) * (0.35 * sin(2.0 * flutter.y) - 0.4 * limb));
@@ -476,7 +476,7 @@ void main() {
   gl_Position = camera * vec4(area.xy + corner * area.z, area.w, 1.0);
 }
 
-#part shadow.fragment tones
+#part shadow.fragment noise
 in vec2 at;
 uniform vec4 area;
 uniform sampler2D shadow; // 0 in the sun, else the brighter, the lower what casts it
@@ -501,7 +501,9 @@ void main() {
     float way = turn + 2.4 * float(i);
     dark += min(1.0, 4.0 * texture(shadow, at + wide * sqrt((float(i) + 0.5) / 28.0) * vec2(cos(way), sin(way))).r);
   }
-  dark /= 28.0;
+  vec2 p = 7.0 * (area.xy + area.z * (2.0 * at - 1.0));
+  // Spots of sun that has passed between the leaves.
+  dark *= (1.0 - 0.45 * smoothstep(0.55, 0.8, 0.6 * noise(0.3 * p) + 0.4 * noise(p))) / 28.0;
 #endif
   vec2 rim = min(at, 1.0 - at);
   float sky = skyAt(area.xy + area.z * (2.0 * at - 1.0));
@@ -736,7 +738,7 @@ void main() {
         grassy *= 0.2;
         soil = mix(soil, vec3(0.37, 0.43, 0.22), 0.75);
       }
-      soil *= 1.0 + 0.5 * grassy * blades(way.xy / way.z, size) / (1.0 - 0.03 / way.z) + 0.3 * grassy * grain(p, 0.05, pixel);
+      soil *= 1.0 + 0.42 * grassy * blades(way.xy / way.z, size) / (1.0 - 0.03 / way.z) + 0.3 * grassy * grain(p, 0.05, pixel);
       // Daisies, where there is less grass.
       vec2 cell = p / 0.17;
       vec2 to = fract(cell) - 0.5 - 0.6 * (vec2(hash(floor(cell) + 3.0), hash(floor(cell) + 7.0)) - 0.5);
@@ -755,7 +757,7 @@ void main() {
   for (float row = 3.0; row > 0.0; row--) {
     float round = (0.07 + 0.1 * row) / haze;
     vec4 trees = kind < 0.5 ? blurred(way, 0.5 * round, 11.0 * row) : treeRow(way, round, 11.0 * row);
-    c = mix(c, mix(dimmed * trees.rgb, horizon, (kind < 0.5 ? 0.0 : 0.16) + 0.12 * row), trees.a);
+    c = mix(c, mix(dimmed * trees.rgb, horizon, (kind < 0.5 ? 0.0 : 0.26) + 0.12 * row), trees.a);
   }
 #endif
   color = vec4(c, 1.0);
