@@ -33,6 +33,12 @@ COLUMNS: dict[str, dict[str, Any]] = {
 FILES_OF = {quantity: re.compile(words) for quantity, words in _KNOWN['files_of'].items()}
 """Words in the names of files, folded, and the motion that they have; empty for none."""
 
+TOLD_BY_SIZE: dict[str, tuple[str, float, str]] = _KNOWN['told_by_size']
+"""Unit of SI of a motion, the largest usual value in it, and the unit of larger ones."""
+
+ANGLES = re.compile(_KNOWN['angles'])
+"""Names of angles, folded, which a table has in one unit."""
+
 INVENTORY: dict[str, list[str]] = _KNOWN['inventory']
 """Columns that an inventory needs: what they say, and the quantities that do together."""
 
@@ -45,6 +51,9 @@ TIME_PARTS: dict[str, str] = _KNOWN['time_parts']
 HEADER: list[str] = _KNOWN['header']
 """Quantities whose names tell the header of a table."""
 
+_AXES: dict[str, str] = _KNOWN['axes']
+"""Quantities with the word or number for an axis behind them, and its letter."""
+
 _UMLAUTS = str.maketrans(_KNOWN['umlauts'])
 _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
@@ -53,7 +62,8 @@ _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\
 _SCALED = re.compile(r'(\d+(?:\.\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
 _IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
-_AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
+_AXIS_FIRST = re.compile(_KNOWN['axis_first'])
+"""Folded name that begins with its axis, as ``nstilt`` and ``rollspeed``."""
 _GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
 """Name of a group before that of a column, as in ``Data Set 1:Time (s)``."""
 _VALUE = re.compile(r'\.value$', re.IGNORECASE)
@@ -212,11 +222,12 @@ def year_of(column: str) -> int:
 def motion_of(column: str) -> tuple[str, str, str] | None:
     """Quantity of a column of a motion, its name and its axis; None for another column."""
     for quantity, pattern in MOTIONS.items():
-        named = name_and_unit(_IN_BRACKETS.sub(r' \1', column), quantity)[0]
-        name = _AXIS_FIRST.sub(r'\2 \1', named)
+        name = name_and_unit(_IN_BRACKETS.sub(r' \1', column), quantity)[0]
         plain = _without_unit(name, quantity)[0] or folded(name)
-        if found := pattern.fullmatch(plain):
-            return quantity, plain[: found.start('axis')], found['axis'] or ''
+        for each in (plain, _AXIS_FIRST.sub(r'\2\1', plain)):
+            if found := pattern.fullmatch(each):
+                axis = found['axis'] or ''
+                return quantity, each[: found.start('axis')], _AXES.get(quantity + axis, axis)
     return None
 
 

@@ -8,27 +8,35 @@ A time column (``time``, ``t``, ``timestamp`` ...) in seconds, in another unit b
 or acceleration: ``x``, ``y``, ``z``, ``displacement``, ``tilt_x``, ``ax``, ``roll`` ... A unit may
 follow the name: ``x [mm]``, ``tilt_x (deg)``, ``ax [g]``. Units only scale the columns, as
 frequency and damping do not depend on them. Comma, semicolon or tab between cells; lines with #
-are comments. Other columns are ignored. A row that is not a number is refused with its line and
-never replaced.
+are comments. Other columns are ignored. A row that is not a number is never replaced: a few are
+gaps and counted, else the first is refused with its line.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.column_names import motion_of
+from tree_sway.files.column_names import TOLD_BY_SIZE
 from tree_sway.files.layouts.known import table_of
+from tree_sway.files.motion.motion_columns import factor_without_unit, motions_of, sample_times
 from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.text_file import read_lines
+from tree_sway.files.time_stamps import Times
+from tree_sway.files.zipped import all_readable, tables_in
 
 _MAX_VALUE = 1e12
 """Largest time or motion in any unit."""
+_MOST_GAPS = 0.1
+"""Share of rows without a number that a record may have."""
+_OF_AN_IMU = {'acceleration', 'rate', 'orientation', 'tilt'}
+"""Quantities that one sensor measures, all at the same frequencies."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +56,8 @@ class SwayRecord:
         Names of the columns in the file.
     source
         Name of the file.
+    notes
+        Choices of the reader, one sentence each.
 
     """
 
@@ -56,17 +66,25 @@ class SwayRecord:
     quantity: str
     columns: tuple[str, ...]
     source: str
+    notes: tuple[str, ...] = ()
 
 
 @of_file
 def read_csv_sway(path: Path) -> SwayRecord:
-    """Read the motion of a tree from a table, as `parse_sway`."""
-    return parse_sway(read_lines(path), str(path))
+    """
+    Read the motion of a tree from a table, as `parse_sway`; of those in a zip an acceleration.
+
+    Rows without a number are gaps in the times, where they are a tenth of all at most.
+    """
+    records = all_readable(dict(tables_in(path)), partial(parse_sway, most_gaps=_MOST_GAPS))
+    return min(records, key=lambda record: record.quantity != 'acceleration')
 
 
-def parse_sway(lines: list[str], source: str) -> SwayRecord:
+def parse_sway(lines: list[str], source: str, most_gaps: float = 0.0) -> SwayRecord:
     """
     Return the motion of a tree from the lines of a table.
+
+    ``most_gaps`` is the share of rows that may have no number.
 
     Raises
     ------
@@ -78,25 +96,40 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     """
     table = table_of(lines, source)
     clock = time_columns(table)
-    motion = [(i, found[0]) for i, name in enumerate(table.columns) if (found := motion_of(name))]
-    if clock is None or not motion:
+    # Sensor Logger has axes x, y, z for all its sensors.
+    is_logged = 'seconds_elapsed' in table.columns
+    groups = motions_of(table, 'acceleration' if is_logged else 'displacement')
+    if clock is None or not groups:
         raise table.error(
             f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}',
             cure='call the columns time, x, y or time, tilt_x or time, ax, ay in the header',
         )
-    if 'seconds_elapsed' in table.columns:  # Sensor Logger has axes x, y, z for all its sensors
-        motion = [(i, 'acceleration' if q == 'displacement' else q) for i, q in motion]
-    quantities = sorted({quantity for _, quantity in motion})
-    if quantities == ['acceleration', 'rate']:  # of an IMU: both have the same frequencies
-        motion = [(i, quantity) for i, quantity in motion if quantity == 'acceleration']
-        quantities = ['acceleration']
+    quantities = sorted({quantity for quantity, _ in groups})
+    if quantities[0] == 'acceleration' and {*quantities} <= _OF_AN_IMU:
+        quantities = quantities[:1]
+    quantity = quantities[0]
     if len(quantities) > 1:
+        names = (table.columns[each] for axes in groups.values() for each in axes.values())
         raise table.error(
-            f'{" and ".join(quantities)} in one file', cure='keep the columns of one quantity'
+            f'{" and ".join(quantities)} in one file',
+            cure=f'keep the columns of one quantity, of {", ".join(names)}',
         )
-    factors = [table.factor_of(i, quantities[0]) for i, _ in motion]
-    columns = [table.columns[i] for i, _ in motion]
+    motion = next([*axes.values()] for (each, _), axes in groups.items() if each == quantity)
+    columns = [table.columns[each] for each in motion]
+    kept = np.flatnonzero(np.isfinite(table.values(motion)).all(axis=1))
+    n_gaps = len(table.rows) - len(kept)
+    notes = []
+    if 0 < n_gaps <= most_gaps * len(table.rows):
+        notes.append(f'{n_gaps} rows without a number are left out')
+        table = table.part(kept)
     values = table.strict(columns)
+    factors = [table.factor_of(each, quantity) for each in motion]
+    if quantity in TOLD_BY_SIZE and not table.unit_of(motion[0], quantity):
+        factor, note = factor_without_unit(
+            table, motion[0], quantity, values, is_scale_needed=False
+        )
+        factors = [factor] * len(motion)
+        notes.append(note)
     with np.errstate(over='ignore'):
         is_plausible = np.abs(values) * factors <= _MAX_VALUE
     for row, column in np.argwhere(~is_plausible)[:1]:
@@ -106,24 +139,24 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
             'correct the cell or remove the row',
         )
     times = _times(table, *clock)
-    return SwayRecord(times, values * factors, quantities[0], tuple(columns), source)
+    said = tuple(filter(None, (*notes, times.note)))
+    return SwayRecord(times.seconds, values * factors, quantity, tuple(columns), source, said)
 
 
-def _times(table: TextTable, columns: list[int], form: str, factor: float) -> Floats:
-    """Seconds of each row, from numbers or from dates."""
-    rows = table.rows
-    times = row_times(table, columns, form, factor, rows).seconds
-    stamps = table.cells(columns[0], rows)
-    for row in np.flatnonzero(~(np.abs(times) <= _MAX_VALUE))[:1]:
+def _times(table: TextTable, columns: Sequence[int], form: str, factor: float) -> Times:
+    """Return the times of the rows, which are numbers or dates that rise."""
+    times = row_times(table, columns, form, factor, table.rows)
+    stamps = table.cells(columns[0], table.rows)
+    for row in np.flatnonzero(~(np.abs(times.seconds) <= _MAX_VALUE))[:1]:
         raise table.error(
             f"time is '{stamps[row][:40]}', neither seconds nor a date",
             row,
             'correct the cell or remove the row',
         )
-    for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
+    for row in np.flatnonzero(np.diff(times.seconds) <= 0.0)[:1]:
         raise table.error(
             f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}',
             row + 1,
             'put the rows in the order of time, each time once',
         )
-    return times
+    return sample_times(table, times, columns[0])

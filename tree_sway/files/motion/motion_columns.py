@@ -1,0 +1,157 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Columns of motion in a table: their quantities and axes, units that are not told, and their times.
+
+A missing unit is told by the lines above the header or the maker of the table, by gravity in
+accelerations, and by rates and angles that are none in radians; that of time by how far samples
+are apart. What was assumed is a note.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+import re
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.files.column_names import (
+    ANGLES,
+    FILES_OF,
+    folded,
+    motion_of,
+    name_and_unit,
+    TOLD_BY_SIZE,
+    unit_known,
+)
+from tree_sway.files.makers import maker_of
+from tree_sway.files.table_file import TextTable
+from tree_sway.files.time_stamps import Times
+
+_VECTORS = ('rate', 'acceleration')
+_BARE_AXIS = re.compile(r'(?:axis)?([xyz])(?:axis|value)?')
+_GRAVITY = (8.5, 11.2)
+"""Range of the median of accelerations with gravity [m/s^2]."""
+_UNITS = {'': 1.0, 'g': 9.80665, 'mg': 0.00980665, 'mm/s^2': 0.001}
+"""Units that gravity tells, of which none is that of SI."""
+_LARGEST = 0.999
+"""Share of the rates that the largest exceeds: a few more may be faults."""
+_SLOWEST = 1.0
+"""Longest time between samples that may tell a sway in [s]."""
+_OLDEST = 946_684_800.0
+"""Date before which a number is no time since 1970: 2000-01-01 [s]."""
+_FINER = {'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9}
+_USUAL_STEP = (2e-3, 0.2)
+"""Times between samples that tell the unit of their times in [s]."""
+_SHORTEST = 5e-4
+"""Time between samples that no motion sensor falls below [s]."""
+
+
+def motions_of(table: TextTable, other: str = '') -> dict[tuple[str, str], dict[str, int]]:
+    """
+    Return the places of the axes of each quantity and name, in the order of the columns.
+
+    Columns without an axis are under an empty name. Those called x, y and z alone are of the
+    quantity of their unit, of the name of the file, or of an acceleration with gravity, else of
+    the ``other`` one.
+    """
+    found: dict[tuple[str, str], dict[str, int]] = {}
+    for index, column in enumerate(table.columns):
+        bare = _BARE_AXIS.fullmatch(folded(name_and_unit(column, 'acceleration')[0]))
+        quantity, name, axis = ('', '', bare[1]) if bare else motion_of(column) or ('', '', '')
+        key = quantity, name if axis else ''
+        found.setdefault(key, {}).setdefault(axis or column, index)
+    axes = {axis: each for axis, each in found.pop(('', ''), {}).items() if axis in ('x', 'y', 'z')}
+    quantity = _quantity_of(table, [*axes.values()], other)
+    return found | ({(quantity, ''): axes} if axes and quantity else {})
+
+
+def _quantity_of(table: TextTable, columns: Sequence[int], other: str) -> str:
+    """Return what columns called x, y and z are; empty for no motion."""
+    if len(columns) < len('xyz'):
+        return other
+    if any(table.unit_of(each, 'rate') for each in columns):
+        units = [(each, table.unit_of(column, each)) for each in _VECTORS for column in columns]
+        known = [each for each, unit in units if unit_known(each, unit)]
+        return next((each for each in known if known.count(each) == len(columns)), other)
+    stem = folded(Path(table.source).stem)
+    named = [each for each, words in FILES_OF.items() if words.search(stem)]
+    return named[0] if named else 'acceleration' if gravity_in(table.values(columns)) else other
+
+
+def gravity_in(values: Floats) -> tuple[str, ...]:
+    """Return the unit of accelerations in which gravity is; nothing without it."""
+    size = _size(values)
+    units = _UNITS.items()
+    return tuple(unit for unit, each in units if _GRAVITY[0] < size * each < _GRAVITY[1])
+
+
+def _size(values: Floats, share: float = 0.5) -> float:
+    """Return the length of vectors that a share of them stays below; 0 without one."""
+    size = np.linalg.norm(values, axis=1)
+    size = size[np.isfinite(size)]
+    if not len(size):
+        return 0.0
+    return float(np.quantile(size, share, method='lower' if share == _LARGEST else 'linear'))
+
+
+def factor_without_unit(
+    table: TextTable, column: int, quantity: str, values: Floats, *, is_scale_needed: bool = True
+) -> tuple[float, str]:
+    """
+    Factor to SI of values without a unit, and what was assumed.
+
+    Where the scale is needed, a `FormatError` refuses values that are too large for any.
+    """
+    name, maker = table.columns[column], maker_of(table)
+    is_count = (values[np.isfinite(values)] % 1.0 == 0.0).all()
+    counts = maker.get(f'count of {quantity}') if is_count else None
+    if known := counts or maker.get(quantity):
+        return table.known_factor(quantity, known), f'{name} is in {known}, as of {maker["maker"]}'
+    unit, most, other = TOLD_BY_SIZE[quantity]
+    for told in gravity_in(values) if quantity == 'acceleration' else ():
+        said = f'no unit of {name} in the header: taken in {told}, as gravity is in it'
+        return _UNITS[told], said if told else ''
+    of, size = 'as a median', _size(values)
+    if quantity in ('rate', 'tilt'):
+        if quantity == 'tilt':
+            angles = [i for i, each in enumerate(table.columns) if ANGLES.search(folded(each))]
+            values = table.values(angles).reshape(-1, 1)
+        of, size = 'at most', _size(values, _LARGEST)
+        if most < size <= np.degrees(most) and not is_count:
+            said = f'no unit of {name} in the header: taken in {other}, as it is up to {size:.4g}'
+            return table.known_factor(quantity, other), said
+    if size > most and is_scale_needed:
+        raise table.error(
+            f'{name} without a unit is {size:.4g} {of}, which is no {unit}',
+            cure=f'give its unit, as {name} [{other}]',
+        )
+    note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'
+    return 1.0, note
+
+
+def sample_times(table: TextTable, times: Times, column: int | None) -> Times:
+    """
+    Return the times of samples, in that unit in which they are as far apart as usual.
+
+    A `FormatError` refuses those that are too far apart or too close.
+    """
+    steps = np.diff(times.seconds[np.isfinite(times.seconds)])
+    step = float(np.median(steps)) if len(steps) else 0.0
+    name = '' if column is None else table.columns[column]
+    has_unit = column is None or table.unit_of(column, 'time') or 'sec' in name.lower()
+    is_dated = (times.epoch or 0.0) > _OLDEST
+    for unit, factor in () if has_unit or is_dated else _FINER.items():
+        if step > _SLOWEST and _USUAL_STEP[0] <= step * factor < _USUAL_STEP[1]:
+            note = f'no unit of {name} in the header: taken in {unit}, a sample every {step:.4g}'
+            return Times(times.seconds * factor, None, note)
+    if step > _SLOWEST or 0.0 < step <= _SHORTEST:
+        size = 'few to tell how a tree sways' if step > _SLOWEST else 'many for a motion sensor'
+        raise table.error(
+            f'a sample every {step:.6g} s, too {size}',
+            cure='name the unit of time, as time [ms]; a sensor sends 20 samples per second or '
+            'more',
+        )
+    return times
