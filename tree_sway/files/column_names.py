@@ -52,18 +52,19 @@ HEADER: list[str] = _KNOWN['header']
 """Quantities whose names tell the header of a table."""
 
 _AXES: dict[str, str] = _KNOWN['axes']
-"""Quantities with the word or number for an axis behind them, and its letter."""
+"""Words for axes, and numbers and letters of quaternions behind their quantity."""
+_SAME_MOTIONS: dict[str, str] = _KNOWN['same_motions']
 
 _UMLAUTS = str.maketrans(_KNOWN['umlauts'])
 _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
-_SCALED = re.compile(r'(\d+(?:\.\d+)?)( ?)(\D.*)')
+_SCALED = re.compile(r'(\d+(?:\.\d+)?(?:e-\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
 _IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
-_AXIS_FIRST = re.compile(_KNOWN['axis_first'])
-"""Folded name that begins with its axis, as ``nstilt`` and ``rollspeed``."""
+_AXIS_WORD = re.compile(_KNOWN['axis_word'])
+"""Folded name with its axis in front, as ``xacc`` and ``nstilt``, or with a word as its end."""
 _GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
 """Name of a group before that of a column, as in ``Data Set 1:Time (s)``."""
 _VALUE = re.compile(r'\.value$', re.IGNORECASE)
@@ -224,11 +225,18 @@ def motion_of(column: str) -> tuple[str, str, str] | None:
     for quantity, pattern in MOTIONS.items():
         name = name_and_unit(_IN_BRACKETS.sub(r' \1', column), quantity)[0]
         plain = _without_unit(name, quantity)[0] or folded(name)
-        for each in (plain, _AXIS_FIRST.sub(r'\2\1', plain)):
+        plain = _SAME_MOTIONS.get(plain, plain)
+        for each in (plain, _AXIS_WORD.sub(_with_axis_letter, plain)):
             if found := pattern.fullmatch(each):
                 axis = found['axis'] or ''
                 return quantity, each[: found.start('axis')], _AXES.get(quantity + axis, axis)
     return None
+
+
+def _with_axis_letter(name: re.Match[str]) -> str:
+    """Return a name with the letter of its axis at its end."""
+    axis = name[1] or name[4]
+    return (name[2] or name[3]) + _AXES.get(axis, axis)
 
 
 def _is_cut(column: str, known: str) -> bool:

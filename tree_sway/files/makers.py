@@ -51,9 +51,9 @@ def maker_of(table: TextTable) -> dict[str, Any]:
 
 def _scales(above: str) -> dict[str, Any]:
     """Return the units that lines tell for the numbers of quantities; empty without."""
-    found = dict[str, Any]()
-    for each in _SCALES:
-        if told := re.search(each['form'], above):
-            size = float(told[1]) ** each['power']
-            found |= {each['quantity']: f'{size:.18f} {each["unit"]}', 'maker': 'the lines above'}
-    return found
+    told = ((each, re.search(each['form'], above)) for each in _SCALES)
+    return {
+        each['quantity']: f'{float(found[1]) ** each["power"]:.9g} {each["unit"]}'
+        for each, found in told
+        if found
+    }

@@ -4,16 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TypeVar
 from zipfile import BadZipFile, is_zipfile, ZipFile
 import zlib
 
 from tree_sway.errors import FormatError
 from tree_sway.files.text_file import decoded, read_bytes, read_lines, reason_of, table_lines
-
-Readable = TypeVar('Readable')
 
 _MOST_FILES = 200
 _HEAD = 200
@@ -27,26 +24,6 @@ def table_in(path: Path, is_wanted: Callable[[str], bool]) -> tuple[str, list[st
     tables = list(tables_in(path))
     wanted = (each for each in tables if is_wanted('\n'.join(each[1][:_HEAD])))
     return next(wanted, tables[0])
-
-
-def all_readable(
-    tables: Mapping[str, list[str]], read: Callable[[list[str], str], Readable]
-) -> list[Readable]:
-    """
-    Return what can be read of tables, by a function of their lines and names.
-
-    Without any the likeliest error is raised: one of a table that has what is looked for.
-    """
-    found = list[Readable]()
-    failures = list[FormatError]()
-    for name, lines in tables.items():
-        try:
-            found.append(read(lines, name))
-        except FormatError as error:
-            failures.append(error)
-    if not found:
-        raise min(failures, key=lambda error: error.what.startswith('no '))
-    return found
 
 
 def tables_in(path: Path) -> Iterator[tuple[str, list[str]]]:

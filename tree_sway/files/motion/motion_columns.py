@@ -61,9 +61,10 @@ def motions_of(table: TextTable, other: str = '') -> dict[tuple[str, str], dict[
     for index, column in enumerate(table.columns):
         bare = _BARE_AXIS.fullmatch(folded(name_and_unit(column, 'acceleration')[0]))
         quantity, name, axis = ('', '', bare[1]) if bare else motion_of(column) or ('', '', '')
-        key = quantity, name if axis else ''
-        found.setdefault(key, {}).setdefault(axis or column, index)
-    axes = {axis: each for axis, each in found.pop(('', ''), {}).items() if axis in ('x', 'y', 'z')}
+        if axis or quantity:
+            key = quantity, name if axis else ''
+            found.setdefault(key, {}).setdefault(axis or column, index)
+    axes = found.pop(('', ''), {})
     quantity = _quantity_of(table, [*axes.values()], other)
     return found | ({(quantity, ''): axes} if axes and quantity else {})
 
@@ -72,10 +73,10 @@ def _quantity_of(table: TextTable, columns: Sequence[int], other: str) -> str:
     """Return what columns called x, y and z are; empty for no motion."""
     if len(columns) < len('xyz'):
         return other
-    if any(table.unit_of(each, 'rate') for each in columns):
-        units = [(each, table.unit_of(column, each)) for each in _VECTORS for column in columns]
-        known = [each for each, unit in units if unit_known(each, unit)]
-        return next((each for each in known if known.count(each) == len(columns)), other)
+    units = [table.unit_of(each, 'rate') for each in columns]
+    if any(units):
+        alike = (each for each in _VECTORS if all(unit_known(each, unit) for unit in units))
+        return next(alike, other)
     stem = folded(Path(table.source).stem)
     named = [each for each, words in FILES_OF.items() if words.search(stem)]
     return named[0] if named else 'acceleration' if gravity_in(table.values(columns)) else other
@@ -97,19 +98,31 @@ def _size(values: Floats, share: float = 0.5) -> float:
     return float(np.quantile(size, share, method='lower' if share == _LARGEST else 'linear'))
 
 
-def factor_without_unit(
-    table: TextTable, column: int, quantity: str, values: Floats, *, is_scale_needed: bool = True
-) -> tuple[float, str]:
+def in_si(
+    table: TextTable, columns: Sequence[int], quantity: str, *, is_scale_needed: bool = True
+) -> tuple[Floats, str]:
     """
-    Factor to SI of values without a unit, and what was assumed.
+    Numbers of the columns of a quantity in units of SI, (n, k), and what was assumed.
 
-    Where the scale is needed, a `FormatError` refuses values that are too large for any.
+    Where the scale is needed, a `FormatError` refuses those that are too large without a unit.
     """
+    values = table.values(columns)
+    if quantity in TOLD_BY_SIZE and not table.unit_of(columns[0], quantity):
+        factor, note = _without_unit(table, columns[0], quantity, values, is_scale_needed)
+        return values * factor, note
+    return values * [table.factor_of(each, quantity) for each in columns], ''
+
+
+def _without_unit(
+    table: TextTable, column: int, quantity: str, values: Floats, is_scale_needed: bool
+) -> tuple[float, str]:
+    """Factor to SI of values without a unit, and what was assumed."""
     name, maker = table.columns[column], maker_of(table)
     is_count = (values[np.isfinite(values)] % 1.0 == 0.0).all()
     counts = maker.get(f'count of {quantity}') if is_count else None
     if known := counts or maker.get(quantity):
-        return table.known_factor(quantity, known), f'{name} is in {known}, as of {maker["maker"]}'
+        said = f'{name} is in {known}, as of {maker.get("maker", "the lines above")}'
+        return table.known_factor(quantity, known), said
     unit, most, other = TOLD_BY_SIZE[quantity]
     for told in gravity_in(values) if quantity == 'acceleration' else ():
         said = f'no unit of {name} in the header: taken in {told}, as gravity is in it'

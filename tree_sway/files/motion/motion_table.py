@@ -15,10 +15,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import chain
 from pathlib import Path
 import re
-from typing import Any
 
 import numpy as np
 
@@ -29,8 +27,8 @@ from tree_sway.files.column_names import FILES_OF, folded, SENDERS
 from tree_sway.files.layouts.known import table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.motion.motion_columns import (
-    factor_without_unit,
     gravity_in,
+    in_si,
     motions_of,
     sample_times,
 )
@@ -40,7 +38,7 @@ from tree_sway.files.row_times import counted_times, row_times, time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import Times
-from tree_sway.files.zipped import all_readable, tables_in
+from tree_sway.files.zipped import tables_in
 
 _ABOUT = 'Metadata.csv'
 """File of Sensor Logger about the phone."""
@@ -68,17 +66,22 @@ def read_motion_table(path: Path) -> MotionRecord:
         unit, rows of several sensors, or times or values that cannot be those of samples.
 
     """
+    records = list[MotionRecord]()
+    failures = list[FormatError]()
     lines_of = dict(tables_in(path))
     beside = path.with_name(_ABOUT)
     if len(lines_of) == 1 and beside.is_file() and beside != path:
         about = read_lines(beside)
     else:
         about = next((each for name, each in lines_of.items() if name.endswith(_ABOUT)), [])
-
-    def read(lines: list[str], name: str) -> list[MotionRecord]:
-        return [_record(table, about) for table in _by_sensor(table_of(lines, name))]
-
-    return _joined([*chain(*all_readable(lines_of, read))], str(path))
+    for name, lines in lines_of.items():
+        try:
+            records += [_record(table, about) for table in _by_sensor(table_of(lines, name))]
+        except FormatError as error:
+            failures.append(error)
+    if not records:
+        raise min(failures, key=lambda error: error.what.startswith('no '))
+    return _joined(records, str(path))
 
 
 def _by_sensor(table: TextTable) -> list[TextTable]:
@@ -107,19 +110,16 @@ def _record(table: TextTable, about: Sequence[str]) -> MotionRecord:
         if times and motions:
             raise table.error(f'{what}: none of a sensor with its three axes', cure=_PARTIAL)
         raise table.error(what, cure=_NAMES)
-    values = {quantity: table.values(columns) for quantity, columns in picked.items()}
     column = None if clock is None else clock[0][0]
-    times = _checked_times(table, times, np.hstack(list(values.values())), column)
-    read = ', '.join(table.columns[each] for columns in picked.values() for each in columns)
-    notes = [f'{Path(source).name}: read {read}, in the order of x, y, z, w', times.note]
-    maker = maker_of(table)
-    for quantity, columns in picked.items():
-        factors = np.array([table.factor_of(each, quantity) for each in columns])
-        if quantity != 'orientation' and not table.unit_of(columns[0], quantity):
-            factors[:], note = factor_without_unit(table, columns[0], quantity, values[quantity])
-            notes.append(note)
-        values[quantity] = values[quantity] * factors
-    if 'acceleration' in values and (maker.get('sign') == -1 or _is_of_apple(about)):
+    every = [each for columns in picked.values() for each in columns]
+    times = _checked_times(table, times, table.values(every), column)
+    found = {quantity: in_si(table, columns, quantity) for quantity, columns in picked.items()}
+    values = {quantity: each for quantity, (each, _) in found.items()}
+    read = ', '.join(table.columns[each] for each in every)
+    order = ' as x, y, z, w' if 'orientation' in picked else ''
+    notes = [f'{Path(source).name}: read {read}{order}', times.note]
+    notes += [note for _, note in found.values()]
+    if 'acceleration' in values and (maker_of(table).get('sign') == -1 or _is_of_apple(about)):
         values['acceleration'] = -values['acceleration']
         notes.append('accelerations are turned about, as those of Apple point as gravity does')
     if _EARTH.match(folded(table.columns[picked.get('acceleration', [0])[0]])):

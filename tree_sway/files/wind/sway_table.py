@@ -16,27 +16,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.column_names import TOLD_BY_SIZE
 from tree_sway.files.layouts.known import table_of
-from tree_sway.files.motion.motion_columns import factor_without_unit, motions_of, sample_times
+from tree_sway.files.motion.motion_columns import in_si, motions_of, sample_times
+from tree_sway.files.motion.motion_record import AXES
+from tree_sway.files.motion.motion_table import read_motion_table
 from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import TextTable
+from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import Times
-from tree_sway.files.zipped import all_readable, tables_in
 
 _MAX_VALUE = 1e12
 """Largest time or motion in any unit."""
 _MOST_GAPS = 0.1
 """Share of rows without a number that a record may have."""
-_OF_AN_IMU = {'acceleration', 'rate', 'orientation', 'tilt'}
-"""Quantities that one sensor measures, all at the same frequencies."""
+_OF_AN_IMU = ('acceleration', 'rate', 'tilt', 'orientation')
+"""Quantities that one sensor measures, all at the same frequencies; the first is taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,12 +72,16 @@ class SwayRecord:
 @of_file
 def read_csv_sway(path: Path) -> SwayRecord:
     """
-    Read the motion of a tree from a table, as `parse_sway`; of those in a zip an acceleration.
+    Read the motion of a tree from a table, as `parse_sway`, or from a phone's zip of several.
 
     Rows without a number are gaps in the times, where they are a tenth of all at most.
     """
-    records = all_readable(dict(tables_in(path)), partial(parse_sway, most_gaps=_MOST_GAPS))
-    return min(records, key=lambda record: record.quantity != 'acceleration')
+    if path.suffix.lower() != '.zip':
+        return parse_sway(read_lines(path), str(path), _MOST_GAPS)
+    found = read_motion_table(path)
+    quantity = next(each for each in AXES if getattr(found, each) is not None)
+    motion, axes = getattr(found, quantity), tuple(AXES[quantity])
+    return SwayRecord(found.time, motion, quantity, axes, found.source, found.notes)
 
 
 def parse_sway(lines: list[str], source: str, most_gaps: float = 0.0) -> SwayRecord:
@@ -105,10 +109,8 @@ def parse_sway(lines: list[str], source: str, most_gaps: float = 0.0) -> SwayRec
             cure='call the columns time, x, y or time, tilt_x or time, ax, ay in the header',
         )
     quantities = sorted({quantity for quantity, _ in groups})
-    if quantities[0] == 'acceleration' and {*quantities} <= _OF_AN_IMU:
-        quantities = quantities[:1]
-    quantity = quantities[0]
-    if len(quantities) > 1:
+    quantity = next((each for each in _OF_AN_IMU if each in quantities), quantities[0])
+    if len(quantities) > 1 and not {*quantities} <= {*_OF_AN_IMU}:
         names = (table.columns[each] for axes in groups.values() for each in axes.values())
         raise table.error(
             f'{" and ".join(quantities)} in one file',
@@ -118,29 +120,21 @@ def parse_sway(lines: list[str], source: str, most_gaps: float = 0.0) -> SwayRec
     columns = [table.columns[each] for each in motion]
     kept = np.flatnonzero(np.isfinite(table.values(motion)).all(axis=1))
     n_gaps = len(table.rows) - len(kept)
-    notes = []
-    if 0 < n_gaps <= most_gaps * len(table.rows):
-        notes.append(f'{n_gaps} rows without a number are left out')
+    if n_gaps <= most_gaps * len(table.rows):
         table = table.part(kept)
     values = table.strict(columns)
-    factors = [table.factor_of(each, quantity) for each in motion]
-    if quantity in TOLD_BY_SIZE and not table.unit_of(motion[0], quantity):
-        factor, note = factor_without_unit(
-            table, motion[0], quantity, values, is_scale_needed=False
-        )
-        factors = [factor] * len(motion)
-        notes.append(note)
     with np.errstate(over='ignore'):
-        is_plausible = np.abs(values) * factors <= _MAX_VALUE
-    for row, column in np.argwhere(~is_plausible)[:1]:
+        motion_si, note = in_si(table, motion, quantity, is_scale_needed=False)
+    for row, column in np.argwhere(np.abs(motion_si) > _MAX_VALUE)[:1]:
         raise table.error(
             f'{columns[column]} is {values[row, column]:.3g}, which is implausible',
             row,
             'correct the cell or remove the row',
         )
     times = _times(table, *clock)
-    said = tuple(filter(None, (*notes, times.note)))
-    return SwayRecord(times.seconds, values * factors, quantity, tuple(columns), source, said)
+    gaps = f'{n_gaps} rows without a number are left out' if n_gaps else ''
+    notes = tuple(filter(None, (gaps, note, times.note)))
+    return SwayRecord(times.seconds, motion_si, quantity, tuple(columns), source, notes)
 
 
 def _times(table: TextTable, columns: Sequence[int], form: str, factor: float) -> Times:

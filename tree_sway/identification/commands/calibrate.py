@@ -147,6 +147,8 @@ def _measured(arguments: argparse.Namespace) -> FreeDecay:
         f'Measured in {record.source}: {record.quantity} of {", ".join(record.columns)}, '
         f'{found.cycles:.0f} swings after the release'
     )
+    for note in record.notes:
+        say(note)
     print(
         f'  swing      {_swing(found.frequency)}{_within(found.frequency_error / found.frequency)}'
     )
