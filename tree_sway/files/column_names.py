@@ -60,9 +60,10 @@ _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
-_SCALED = re.compile(r'(\d+(?:\.\d+)?(?:e-\d+)?)( ?)(\D.*)')
+_SCALED = re.compile(r'(\d+(?:\.\d+)?(?:e[-+]\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
-_IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
+_IN_BRACKETS = re.compile(r'(?:[\[(]|\s-\s)([xyzXYZ])(?:[\])]|(?=\s|$))')
+"""Axis in brackets or behind a sign, as in ``Acceleration - x (m/s²)``."""
 _AXIS_WORD = re.compile(_KNOWN['axis_word'])
 """Folded name with its axis in front, as ``xacc`` and ``nstilt``, or with a word as its end."""
 _GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
@@ -283,7 +284,8 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
             inside = words[begin:end]
             for unit in ('/'.join(inside), ''.join(inside)):
                 is_last = end == len(words) or (len(unit) > 1 and unit != 'in')
-                if unit_known(kind, unit) and is_last and (begin or whole in _ALL_NAMES):
+                is_unit = unit_known(kind, unit) and not unit.isdecimal()
+                if is_unit and is_last and (begin or whole in _ALL_NAMES):
                     rest = re.sub(r'\s(in|en)$', '', ' '.join(words[:begin] + words[end:]))
                     found = found if found[1] else (folded(rest), unit)
                     if _ALL_NAMES & {folded(rest), whole}:
