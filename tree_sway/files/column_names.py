@@ -33,8 +33,11 @@ COLUMNS: dict[str, dict[str, Any]] = {
 FILES_OF = {quantity: re.compile(words) for quantity, words in _KNOWN['files_of'].items()}
 """Words in the names of files, folded, and the motion that they have; empty for none."""
 
-TOLD_BY_SIZE: dict[str, tuple[str, float, str]] = _KNOWN['told_by_size']
-"""Unit of SI of a motion, the largest usual value in it, and the unit of larger ones."""
+TOLD_BY_SIZE: dict[str, Any] = _KNOWN['told_by_size']
+"""
+Unit of SI of a motion, its largest usual value, another unit, its own largest value where size
+tells it, and the share of values that is compared with these: a few may be faults.
+"""
 
 ANGLES = re.compile(_KNOWN['angles'])
 """Names of angles, folded, which a table has in one unit."""
@@ -236,8 +239,7 @@ def motion_of(column: str) -> tuple[str, str, str] | None:
 
 def _with_axis_letter(name: re.Match[str]) -> str:
     """Return a name with the letter of its axis at its end."""
-    axis = name[1] or name[4]
-    return (name[2] or name[3]) + _AXES.get(axis, axis)
+    return (name[2] or name[3]) + _AXES[name[1] or name[4]]
 
 
 def _is_cut(column: str, known: str) -> bool:

@@ -53,7 +53,9 @@ def _scales(above: str) -> dict[str, Any]:
     """Return the units that lines tell for the numbers of quantities; empty without."""
     told = ((each, re.search(each['form'], above)) for each in _SCALES)
     return {
-        each['quantity']: f'{float(found[1]) ** each["power"]:.9g} {each["unit"]}'
+        each[
+            'quantity'
+        ]: f'{float(found[1].replace(",", ".")) ** each["power"]:.9g} {each["unit"]}'
         for each, found in told
         if found
     }

@@ -97,22 +97,24 @@ def test_what_only_looks_like_an_axis_is_no_motion(name: str) -> None:
 
 
 SCALES = {
-    'sizes of a count behind keys': 'tscale,0.001\ngscale,0.001\nascale,0.0005\nt,{}\n',
+    'sizes of a count behind keys': 'tscale,.001\ngscale,0.001\nascale,0.0005\nt,{}\n',
     'counts in a unit behind keys': '"acc_1G",2000\n"gyroScale",1e-9\nloopIteration,time,{}\n',
     'sizes of a count in words': 'Accel: 0.0005 g/LSB, gyro: 0.05 dps/count\ntime [ms],{}\n',
     'counts in a unit in words': '# 2000 LSB/g, 20 LSB/(deg/s)\nmillis,{}\n',
+    'sizes of a count with decimal commas': ('ACC;0,5 mg/LSB\nGyro;50,0 mdps/LSB\nZeit [ms];{}\n'),
     'counts in a unit behind words': 'LSB/g: 2000\nLSB/dps: 20\nmillis,{}\n',
 }
-RATES = [1e-3, 1e-3, 0.05 * DEGREE, 0.05 * DEGREE, 0.05 * DEGREE]
+RATES = [1e-3, 1e-3, *[0.05 * DEGREE] * 4]
 
 
 @pytest.mark.parametrize(('name', 'rate'), zip(SCALES, RATES, strict=True))
 def test_a_scale_above_the_header_is_that_of_counts(
     tmp_path: Path, name: str, rate: float
 ) -> None:
-    head = SCALES[name].format('gx,gy,gz,ax,ay,az')
+    sign = ';' if 'decimal commas' in name else ','
+    head = SCALES[name].format(sign.join('gx gy gz ax ay az'.split()))
     clock = '{k},{us}' if 'loop' in head else '{ms}'
-    text = head + rows(clock + ',0,{k},0,100,0,2000')
+    text = head + rows((clock + ',0,{k},0,100,0,2000').replace(',', sign))
     record = moved(tmp_path, text)
     assert record.acceleration is not None
     assert record.rate is not None

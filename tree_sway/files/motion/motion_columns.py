@@ -37,8 +37,6 @@ _GRAVITY = (8.5, 11.2)
 """Range of the median of accelerations with gravity [m/s^2]."""
 _UNITS = {'': 1.0, 'g': 9.80665, 'mg': 0.00980665, 'mm/s^2': 0.001}
 """Units that gravity tells, of which none is that of SI."""
-_LARGEST = 0.999
-"""Share of the rates that the largest exceeds: a few more may be faults."""
 _SLOWEST = 1.0
 """Longest time between samples that may tell a sway in [s]."""
 _OLDEST = 946_684_800.0
@@ -94,9 +92,7 @@ def _size(values: Floats, share: float = 0.5) -> float:
     """Return the length of vectors that a share of them stays below; 0 without one."""
     size = np.linalg.norm(values, axis=1)
     size = size[np.isfinite(size)]
-    if not len(size):
-        return 0.0
-    return float(np.quantile(size, share, method='lower' if share == _LARGEST else 'linear'))
+    return float(np.quantile(size, share, method='lower')) if len(size) else 0.0
 
 
 def in_si(
@@ -108,42 +104,34 @@ def in_si(
     Where the scale is needed, a `FormatError` refuses those that are too large without a unit.
     """
     values = table.values(columns)
-    if quantity in TOLD_BY_SIZE and not table.unit_of(columns[0], quantity):
-        factor, note = _without_unit(table, columns[0], quantity, values, is_scale_needed)
-        return values * factor, note
-    return values * [table.factor_of(each, quantity) for each in columns], ''
-
-
-def _without_unit(
-    table: TextTable, column: int, quantity: str, values: Floats, is_scale_needed: bool
-) -> tuple[float, str]:
-    """Factor to SI of values without a unit, and what was assumed."""
-    name, maker = table.columns[column], maker_of(table)
+    if quantity not in TOLD_BY_SIZE or table.unit_of(columns[0], quantity):
+        return values * [table.factor_of(each, quantity) for each in columns], ''
+    name, maker = table.columns[columns[0]], maker_of(table)
     is_count = (values[np.isfinite(values)] % 1.0 == 0.0).all()
     counts = maker.get(f'count of {quantity}') if is_count else None
     if known := counts or maker.get(quantity):
         said = f'{name} is in {known}, as of {maker.get("maker", "the lines above")}'
-        return table.known_factor(quantity, known), said
-    unit, most, other = TOLD_BY_SIZE[quantity]
+        return values * table.known_factor(quantity, known), said
     for told in gravity_in(values) if quantity == 'acceleration' else ():
         said = f'no unit of {name} in the header: taken in {told}, as gravity is in it'
-        return _UNITS[told], said if told else ''
-    of, size = 'as a median', _size(values)
-    if quantity in ('rate', 'tilt'):
-        if quantity == 'tilt':
-            angles = [i for i, each in enumerate(table.columns) if ANGLES.search(folded(each))]
-            values = table.values(angles).reshape(-1, 1)
-        of, size = 'at most', _size(values, _LARGEST)
-        if most < size <= np.degrees(most) and not is_count:
-            said = f'no unit of {name} in the header: taken in {other}, as it is up to {size:.4g}'
-            return table.known_factor(quantity, other), said
+        return values * _UNITS[told], said if told else ''
+    unit, most, other, most_in_other, share = TOLD_BY_SIZE[quantity]
+    compared = values
+    if quantity == 'tilt':  # a table has all of its angles in one unit
+        angles = [i for i, each in enumerate(table.columns) if ANGLES.search(folded(each))]
+        compared = table.values(angles).reshape(-1, 1)
+    size = _size(compared, share)
+    if most < size <= most_in_other and not is_count:
+        said = f'no unit of {name} in the header: taken in {other}, as it is up to {size:.4g}'
+        return values * table.known_factor(quantity, other), said
     if size > most and is_scale_needed:
+        of = 'at most' if most_in_other else 'as a median'
         raise table.error(
             f'{name} without a unit is {size:.4g} {of}, which is no {unit}',
             cure=f'give its unit, as {name} [{other}]',
         )
     note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'
-    return 1.0, note
+    return values, note
 
 
 def sample_times(table: TextTable, times: Times, column: int | None) -> Times:
