@@ -230,16 +230,14 @@ def motion_of(column: str) -> tuple[str, str, str] | None:
         name = name_and_unit(_IN_BRACKETS.sub(r' \1', column), quantity)[0]
         plain = _without_unit(name, quantity)[0] or folded(name)
         plain = _SAME_MOTIONS.get(plain, plain)
-        for each in (plain, _AXIS_WORD.sub(_with_axis_letter, plain)):
+        turned = _AXIS_WORD.sub(
+            lambda word: (word[2] or word[3]) + _AXES[word[1] or word[4]], plain
+        )
+        for each in (plain, turned):
             if found := pattern.fullmatch(each):
                 axis = found['axis'] or ''
                 return quantity, each[: found.start('axis')], _AXES.get(quantity + axis, axis)
     return None
-
-
-def _with_axis_letter(name: re.Match[str]) -> str:
-    """Return a name with the letter of its axis at its end."""
-    return (name[2] or name[3]) + _AXES[name[1] or name[4]]
 
 
 def _is_cut(column: str, known: str) -> bool:

@@ -36,7 +36,11 @@ def maker_of(table: TextTable) -> dict[str, Any]:
     names = [folded(name_and_unit(column, 'speed')[0]) for column in table.columns]
     last = {folded(column.rpartition('.')[2]) for column in table.columns}  # of a name in groups
     above = '\n'.join(table.above)
-    scales = _scales(above)
+    scales = dict[str, str]()
+    for each in _SCALES:
+        if told := re.search(each['form'], above):
+            size = float(told[1].replace(',', '.')) ** each['power']
+            scales[each['quantity']] = f'{size:.9g} {each["unit"]}'
     for maker in _MAKERS:
         is_it = (
             set(maker['names'].split()) <= last | set(names) and (maker['above'] or '') in above
@@ -47,15 +51,3 @@ def maker_of(table: TextTable) -> dict[str, Any]:
         if is_it:
             return maker | scales
     return scales
-
-
-def _scales(above: str) -> dict[str, Any]:
-    """Return the units that lines tell for the numbers of quantities; empty without."""
-    told = ((each, re.search(each['form'], above)) for each in _SCALES)
-    return {
-        each[
-            'quantity'
-        ]: f'{float(found[1].replace(",", ".")) ** each["power"]:.9g} {each["unit"]}'
-        for each, found in told
-        if found
-    }

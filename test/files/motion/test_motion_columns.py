@@ -145,7 +145,7 @@ def test_of_numbered_parts_of_a_quaternion_the_first_is_the_scalar(tmp_path: Pat
     assert record.rate is not None
     np.testing.assert_allclose(record.orientation[3], [0.6, 0.0, 3.0, 0.8])
     np.testing.assert_allclose(record.rate[0], [0.1, 0.2, 0.3])
-    assert 'q[1], q[2], q[3], q[0] as x, y, z, w' in record.notes[0]
+    assert 'q[1], q[2], q[3], q[0], the orientation as x, y, z, w' in record.notes[0]
     assert swayed(tmp_path, text).quantity == 'rate'
 
 

@@ -31,6 +31,9 @@ from tree_sway.files.makers import maker_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.time_stamps import Times
 
+Motions = dict[tuple[str, str], dict[str, int]]
+"""Places of columns by their axes, of each quantity and name."""
+
 _VECTORS = ('rate', 'acceleration')
 _BARE_AXIS = re.compile(r'(?:axis)?([xyz])(?:axis|value)?')
 _GRAVITY = (8.5, 11.2)
@@ -48,7 +51,7 @@ _SHORTEST = 5e-4
 """Time between samples that no motion sensor falls below [s]."""
 
 
-def motions_of(table: TextTable, other: str = '') -> dict[tuple[str, str], dict[str, int]]:
+def motions_of(table: TextTable, other: str = '') -> Motions:
     """
     Return the places of the axes of each quantity and name, in the order of the columns.
 
@@ -56,7 +59,7 @@ def motions_of(table: TextTable, other: str = '') -> dict[tuple[str, str], dict[
     quantity of their unit, of the name of the file, or of an acceleration with gravity, else of
     the ``other`` one.
     """
-    found: dict[tuple[str, str], dict[str, int]] = {}
+    found: Motions = {}
     for index, column in enumerate(table.columns):
         bare = _BARE_AXIS.fullmatch(folded(name_and_unit(column, 'acceleration')[0]))
         quantity, name, axis = ('', '', bare[1]) if bare else motion_of(column) or ('', '', '')

@@ -29,6 +29,7 @@ from tree_sway.files.makers import maker_of
 from tree_sway.files.motion.motion_columns import (
     gravity_in,
     in_si,
+    Motions,
     motions_of,
     sample_times,
 )
@@ -116,7 +117,7 @@ def _record(table: TextTable, about: Sequence[str]) -> MotionRecord:
     found = {quantity: in_si(table, columns, quantity) for quantity, columns in picked.items()}
     values = {quantity: each for quantity, (each, _) in found.items()}
     read = ', '.join(table.columns[each] for each in every)
-    order = ' as x, y, z, w' if 'orientation' in picked else ''
+    order = ', the orientation as x, y, z, w' if 'orientation' in picked else ''
     notes = [f'{Path(source).name}: read {read}{order}', times.note]
     notes += [note for _, note in found.values()]
     if 'acceleration' in values and (maker_of(table).get('sign') == -1 or _is_of_apple(about)):
@@ -177,7 +178,7 @@ def _worth(record: MotionRecord) -> tuple[bool, ...]:
     return has_gravity, record.acceleration is not None, record.rate is not None, not is_raw
 
 
-def _axes(motions: dict[tuple[str, str], dict[str, int]]) -> dict[str, list[int]]:
+def _axes(motions: Motions) -> dict[str, list[int]]:
     """Columns of the axes of each quantity: of several with one name the first that has all."""
     picked: dict[str, list[int]] = {}
     for (quantity, _), axes in motions.items():
