@@ -33,8 +33,6 @@ from tree_sway.files.time_stamps import Times
 
 _MAX_VALUE = 1e12
 """Largest time or motion in any unit."""
-_MOST_GAPS = 0.1
-"""Share of rows without a number that a record may have."""
 _OF_AN_IMU = ('acceleration', 'rate', 'tilt', 'orientation')
 """Quantities that one sensor measures, all at the same frequencies; the first is taken."""
 
@@ -70,14 +68,14 @@ class SwayRecord:
 
 
 @of_file
-def read_csv_sway(path: Path) -> SwayRecord:
+def read_csv_sway(path: Path, most_gaps: float = 0.1) -> SwayRecord:
     """
     Read the motion of a tree from a table, as `parse_sway`, or from a phone's zip of several.
 
-    Rows without a number are gaps in the times, where they are a tenth of all at most.
+    ``most_gaps`` is the share of rows that may have no number: they are gaps in the times.
     """
     if path.suffix.lower() != '.zip':
-        return parse_sway(read_lines(path), str(path), _MOST_GAPS)
+        return parse_sway(read_lines(path), str(path), most_gaps)
     found = read_motion_table(path)
     quantity = next(each for each in AXES if getattr(found, each) is not None)
     motion, axes = getattr(found, quantity), tuple(AXES[quantity])
