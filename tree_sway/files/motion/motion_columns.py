@@ -21,7 +21,6 @@ from tree_sway.files.column_names import (
     ANGLES,
     FILES_OF,
     folded,
-    is_named,
     motion_of,
     name_and_unit,
     TOLD_BY_SIZE,
@@ -63,7 +62,8 @@ def motions_of(table: TextTable, other: str = '') -> Motions:
     for index, column in enumerate(table.columns):
         bare = _BARE_AXIS.fullmatch(folded(name_and_unit(column, 'acceleration')[0]))
         quantity, name, axis = ('', '', bare[1]) if bare else motion_of(column) or ('', '', '')
-        if (axis or quantity) and not is_named(column, 'time'):  # as X [s] of Delsys
+        is_time = unit_known('time', name_and_unit(column, 'time')[1])  # as X [s] of Delsys
+        if (axis or quantity) and not is_time:
             key = quantity, name if axis else ''
             found.setdefault(key, {}).setdefault(axis or column, index)
     axes = found.pop(('', ''), {})
