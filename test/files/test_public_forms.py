@@ -490,7 +490,7 @@ def test_motions_are_read_as_they_are(tmp_path: Path, head: str, form: str) -> N
 @pytest.mark.parametrize(
     ('text', 'match'),
     [
-        ('GYROFLOW IMU LOG\nascale,0.1\nt,gx,gy,gz,ax,ay,az\n0,0,0,0,0,0,98\n', 'whose scales'),
+        ('GYROFLOW IMU LOG\nid,a\nt,gx,gy,gz,ax,ay,az\n0,0,0,0,0,0,98\n', 'which is no m/s'),
         ('sensor,timestamp,x,y,z\nACC,0,0,0,9.8\nGYRO,1,0,0,0\n', 'rows of 2 instruments'),
     ],
 )

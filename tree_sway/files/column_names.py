@@ -33,6 +33,15 @@ COLUMNS: dict[str, dict[str, Any]] = {
 FILES_OF = {quantity: re.compile(words) for quantity, words in _KNOWN['files_of'].items()}
 """Words in the names of files, folded, and the motion that they have; empty for none."""
 
+TOLD_BY_SIZE: dict[str, Any] = _KNOWN['told_by_size']
+"""
+Unit of SI of a motion, its largest usual value, another unit, its own largest value where size
+tells it, and the share of values that is compared with these: a few may be faults.
+"""
+
+ANGLES = re.compile(_KNOWN['angles'])
+"""Names of angles, folded, which a table has in one unit."""
+
 INVENTORY: dict[str, list[str]] = _KNOWN['inventory']
 """Columns that an inventory needs: what they say, and the quantities that do together."""
 
@@ -45,15 +54,21 @@ TIME_PARTS: dict[str, str] = _KNOWN['time_parts']
 HEADER: list[str] = _KNOWN['header']
 """Quantities whose names tell the header of a table."""
 
+_AXES: dict[str, str] = _KNOWN['axes']
+"""Words for axes, and numbers and letters of quaternions behind their quantity."""
+_SAME_MOTIONS: dict[str, str] = _KNOWN['same_motions']
+
 _UMLAUTS = str.maketrans(_KNOWN['umlauts'])
 _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
-_SCALED = re.compile(r'(\d+(?:\.\d+)?)( ?)(\D.*)')
+_SCALED = re.compile(r'(\d+(?:\.\d+)?(?:e[-+]\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
-_IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
-_AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
+_IN_BRACKETS = re.compile(r'(?:[\[(]|\s-\s)([xyzXYZ])(?:[\])]|(?=\s|$))')
+"""Axis in brackets or behind a sign, as in ``Acceleration - x (m/s²)``."""
+_AXIS_WORD = re.compile(_KNOWN['axis_word'])
+"""Folded name with its axis in front, as ``xacc`` and ``nstilt``, or with a word as its end."""
 _GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
 """Name of a group before that of a column, as in ``Data Set 1:Time (s)``."""
 _VALUE = re.compile(r'\.value$', re.IGNORECASE)
@@ -212,11 +227,16 @@ def year_of(column: str) -> int:
 def motion_of(column: str) -> tuple[str, str, str] | None:
     """Quantity of a column of a motion, its name and its axis; None for another column."""
     for quantity, pattern in MOTIONS.items():
-        named = name_and_unit(_IN_BRACKETS.sub(r' \1', column), quantity)[0]
-        name = _AXIS_FIRST.sub(r'\2 \1', named)
+        name = name_and_unit(_IN_BRACKETS.sub(r' \1', column), quantity)[0]
         plain = _without_unit(name, quantity)[0] or folded(name)
-        if found := pattern.fullmatch(plain):
-            return quantity, plain[: found.start('axis')], found['axis'] or ''
+        plain = _SAME_MOTIONS.get(plain, plain)
+        turned = _AXIS_WORD.sub(
+            lambda word: (word[2] or word[3]) + _AXES[word[1] or word[4]], plain
+        )
+        for each in (plain, turned):
+            if found := pattern.fullmatch(each):
+                axis = found['axis'] or ''
+                return quantity, each[: found.start('axis')], _AXES.get(quantity + axis, axis)
     return None
 
 
@@ -264,7 +284,8 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
             inside = words[begin:end]
             for unit in ('/'.join(inside), ''.join(inside)):
                 is_last = end == len(words) or (len(unit) > 1 and unit != 'in')
-                if unit_known(kind, unit) and is_last and (begin or whole in _ALL_NAMES):
+                is_unit = unit_known(kind, unit) and not unit.isdecimal()
+                if is_unit and is_last and (begin or whole in _ALL_NAMES):
                     rest = re.sub(r'\s(in|en)$', '', ' '.join(words[:begin] + words[end:]))
                     found = found if found[1] else (folded(rest), unit)
                     if _ALL_NAMES & {folded(rest), whole}:

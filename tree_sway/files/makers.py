@@ -8,10 +8,15 @@ of stems, and the ``sign`` of accelerations, which is -1 where they point as gra
 Apple's phones. A unit that is chosen in a program, and so is asked for, is ``?``. A table is a
 maker's if it has all ``names``, maybe a ``value`` in the first row of the column ``by``, and maybe
 a text ``above`` its header.
+
+A line above the header may tell a scale by a form of `scales.csv`: the size of 1 in a column of
+its ``quantity`` in its ``unit``, or with the ``power`` -1 how many are one unit. A ``count of``
+one is a whole number.
 """
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from tree_sway.files.column_names import folded, name_and_unit
@@ -19,13 +24,23 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.tables import table_beside
 
 _MAKERS = table_beside(__file__, 'makers.csv')
+_SCALES = table_beside(__file__, 'scales.csv')
 
 
 def maker_of(table: TextTable) -> dict[str, Any]:
-    """Return the row of the first maker that a table fits; empty for a table of none."""
+    """
+    Return the row of the first maker that a table fits; empty for a table of none.
+
+    Scales that stand above the header count before its units.
+    """
     names = [folded(name_and_unit(column, 'speed')[0]) for column in table.columns]
     last = {folded(column.rpartition('.')[2]) for column in table.columns}  # of a name in groups
     above = '\n'.join(table.above)
+    scales = dict[str, str]()
+    for each in _SCALES:
+        if told := re.search(each['form'], above):
+            size = float(told[1].replace(',', '.')) ** each['power']
+            scales[each['quantity']] = f'{size:.9g} {each["unit"]}'
     for maker in _MAKERS:
         is_it = (
             set(maker['names'].split()) <= last | set(names) and (maker['above'] or '') in above
@@ -34,5 +49,5 @@ def maker_of(table: TextTable) -> dict[str, Any]:
             cells = table.cells(names.index(maker['by']), [0])
             is_it = cells[0].removesuffix('.0') == str(maker['value'])
         if is_it:
-            return maker
-    return {}
+            return maker | scales
+    return scales

@@ -54,7 +54,7 @@ _THOUSANDS = re.compile(r'(?<=\d)\.(?=\d{3}(?:\.\d{3})*,\d)')
 _NINES = re.compile(r'99+(?:[.,][09]+)?')
 _MUCH = 4.0
 """Times the largest other number that a code of a missing value is."""
-_POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
+_POINT = re.compile(r'(?<![\d.:])\d+\.\d+(?![\d.])')  # no 01.03.2024 and no 07:58:00.25
 
 
 @dataclass(frozen=True, slots=True)

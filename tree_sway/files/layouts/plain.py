@@ -25,7 +25,7 @@ from tree_sway.files.column_names import (
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import parse_table, separator_of, split_row, TextTable
 
-_HEAD = 40
+_HEAD = 200
 _CAMPBELL = '"TOA5"', 'TOA5'
 _HEAD_ENDS = '***End_of_Header***'
 _MOST_COLUMNS = 200

@@ -147,6 +147,8 @@ def _measured(arguments: argparse.Namespace) -> FreeDecay:
         f'Measured in {record.source}: {record.quantity} of {", ".join(record.columns)}, '
         f'{found.cycles:.0f} swings after the release'
     )
+    for note in record.notes:
+        say(note)
     print(
         f'  swing      {_swing(found.frequency)}{_within(found.frequency_error / found.frequency)}'
     )
@@ -161,7 +163,7 @@ def _measured(arguments: argparse.Namespace) -> FreeDecay:
 def _recorded(source: str, seconds: float) -> SwayRecord:
     """Read a file, or wait until a phone has measured for some time [s]."""
     if not source.startswith(('http://', 'https://')):
-        return read_csv_sway(path_of(source))
+        return read_csv_sway(path_of(source), 0.0)  # a release is whole
     measured = -1.0
     with waiting('listening to the phone'):
         while True:
