@@ -15,9 +15,10 @@ from pathlib import Path
 
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files.column_names import folded, motion_of
-from tree_sway.files.layouts.known import looks_like_wind, table_of
+from tree_sway.files.layouts.known import looks_like_wind, table_of, ZIP_BEGINS
 from tree_sway.files.text_file import read_head
 from tree_sway.files.yaml_document import begins_with_key
+from tree_sway.files.zipped import table_in
 from tree_sway.tables import table_beside
 
 _ROWS = 60
@@ -45,6 +46,7 @@ def expected(path: Path, *kinds: str) -> Iterator[None]:
 def kind_of(path: Path) -> str:
     """Return the kind of a file by its beginning; empty if nothing tells it."""
     with suppress(TreeSwayError):
+        from tree_sway.files.scenes.inventory.inventory_file import lacking_columns
         from tree_sway.files.scenes.stand_table import is_stand_table
         from tree_sway.files.trees.tree_formats import TREE_FORMATS
         from tree_sway.files.wind.wind_formats import WIND_FORMATS
@@ -55,6 +57,11 @@ def kind_of(path: Path) -> str:
                 return kind
         if head.startswith('time [s],wind_x [m/s],'):
             return 'sway'
+        if head.startswith(ZIP_BEGINS):
+            name, lines = table_in(
+                path, lambda text: lacking_columns(text) == [] or looks_like_wind(text)
+            )
+            path, head = Path(name), '\n'.join(lines[:_ROWS])
         if is_stand_table(head, path):
             return 'inventory'
         sure = (each for each in WIND_FORMATS if each.name not in ('toa5', 'sonic', 'csv'))

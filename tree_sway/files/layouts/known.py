@@ -28,6 +28,7 @@ _LAYOUTS = (
 )
 
 _HEAD = 200
+ZIP_BEGINS = 'PK\3\4'
 
 
 def _layout_of(lines: Sequence[str]) -> Layout | None:
@@ -47,9 +48,9 @@ def table_of(lines: list[str], source: str) -> TextTable:
 
 
 def looks_like_wind(head: str) -> bool:
-    """Whether the beginning of a file is that of a table of wind."""
+    """Whether the beginning of a file is that of a table of wind, or of a zip."""
     lines = head.replace('\r\n', '\n').replace('\r', '\n').split('\n')
     found = _layout_of(lines[:_HEAD])
     if found is JSON:
         return any(word in head.lower() for word in ('wind', '"wd', '_wd', '"obs'))
-    return found is not None
+    return found is not None or head.startswith(ZIP_BEGINS)

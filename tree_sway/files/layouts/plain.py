@@ -25,7 +25,8 @@ from tree_sway.files.column_names import (
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import parse_table, separator_of, split_row, TextTable
 
-_HEAD = 40
+_HEAD, _LONG_HEAD = 40, 200
+"""Lines in which the header is, and where none of them names two quantities."""
 _CAMPBELL = '"TOA5"', 'TOA5'
 _HEAD_ENDS = '***End_of_Header***'
 _MOST_COLUMNS = 200
@@ -36,6 +37,7 @@ _BETWEEN = re.compile(r'[,;:=\t|()\[\]]|\bin\b')
 _DIGIT = re.compile(r'[-+]?\.?\d')
 _COMMENT = re.compile(r'(?:[#%/ ]+|;) *(?:[Hh]eaders\s*,)? *')
 _PARTS = ('yyyymmdd', 'yyyy', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
+_ABOUT_UNIT = re.compile('unit|unidad|einheit|eenheid', re.IGNORECASE)
 _KINDS = ('speed', 'acceleration', 'rate')
 """Kinds of units of which a row of units has at least one."""
 _SIZES = ('height', 'diameter', 'girth')
@@ -45,13 +47,23 @@ def header_line(lines: Sequence[str]) -> int | None:
     """
     Line of the header: the first of those that name most quantities.
 
-    A comment is one only where no other line names two. It is below the heads of LabVIEW.
+    A comment is one only where no other line names two. It is below the heads of LabVIEW, and
+    below the settings of a logger, each of which names one.
     """
+    found = _names_in(lines[:_HEAD])
+    if max(found.values(), default=0) < 2:
+        found = _names_in(lines[:_LONG_HEAD])
+    most = max(found, key=lambda number: found[number], default=None)
+    return most if most is not None and found[most] else None
+
+
+def _names_in(lines: Sequence[str]) -> dict[int, int]:
+    """Return how many quantities the lines name that may be a header."""
     plain: dict[int, int] = {}
     hashed: dict[int, int] = {}
-    ends = (number for number, line in enumerate(lines[:_HEAD]) if line.startswith(_HEAD_ENDS))
+    ends = (number for number, line in enumerate(lines) if line.startswith(_HEAD_ENDS))
     first = max(ends, default=0)
-    for number, line in enumerate(lines[first:_HEAD], start=first):
+    for number, line in enumerate(lines[first:], start=first):
         filled = list(filter(None, _cells(line)))
         n_numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
         is_comment = _is_comment(line)
@@ -60,9 +72,7 @@ def header_line(lines: Sequence[str]) -> int | None:
         if len(filled) > 1 and 2 * n_numbers <= len(filled):
             count = sum(map(is_known, {*_without_place(filled[:_MOST_COLUMNS])}))
             (hashed if is_comment else plain)[number] = count
-    found = plain if max(plain.values(), default=0) > 1 else plain | hashed
-    most = max(found, key=lambda number: found[number], default=None)
-    return most if most is not None and found[most] else None
+    return plain if max(plain.values(), default=0) > 1 else plain | hashed
 
 
 def _is_comment(line: str) -> bool:
@@ -137,7 +147,8 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
         words.append([_unit_below(cell) for cell in cells])
     split = map(table.split, table.above)
     size = len(table.columns)
-    told = (row for row in split if size - 2 < len(row) <= size and not {*row} & {*table.columns})
+    alike = (row for row in split if max(size - 2, 2) < len(row) <= size)
+    told = (row for row in alike if not {*row} & {*table.columns})
     above = [[*map(_unit_below, row)] for row in told]
     is_campbell = any(line.startswith(_CAMPBELL) for line in table.above)
     rows = [row for row in (*words, *above) if is_campbell or _are_units(table, row)]
@@ -156,16 +167,23 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
 
 
 def units_above(table: TextTable, above: Sequence[str]) -> tuple[str, ...]:
-    """Return units of columns that lines tell, as ``# WSPD: wind speed (knots)``; may be empty."""
+    """
+    Return units of columns that lines tell, as ``# WSPD: wind speed (knots)``; may be empty.
+
+    A speed that no line names has the unit which all lines about a unit tell, as ``Units,mph``.
+    """
     said = [
         [part.strip('#%/" ') for part in (*_BETWEEN.split(line), *line.split())] for line in above
     ]
+    settings = [part for line in said if _ABOUT_UNIT.search(line[0]) for part in line[1:]]
+    speeds = {part for part in settings if unit_known('speed', part)}
+    of_all = speeds.pop() if len(speeds) == 1 else ''
 
     def unit_of(column: str) -> str:
         kinds = [COLUMNS[each]['unit'] for each in HEADER if is_named(column, each)]
         parts = (part for line in said if column in line for part in line if part != column)
         known = (part for part in parts if any(unit_known(kind, part) for kind in kinds))
-        return next(known, '')
+        return next(known, of_all if is_named(column, 'wind_speed', 'gust') else '')
 
     return tuple(map(unit_of, table.columns))
 

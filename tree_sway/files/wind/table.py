@@ -25,7 +25,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
-from tree_sway.files.column_names import folded, is_named, rank_of
+from tree_sway.files.column_names import FILES_OF, folded, is_named, rank_of
 from tree_sway.files.layouts.known import looks_like_wind, table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.row_times import row_times, time_columns
@@ -180,7 +180,9 @@ def _components(table: TextTable, names: tuple[str, ...] | None) -> list[int]:
     if found[0] is None or found[1] is None:
         return []
     is_place = folded(table.columns[found[0].index]) in _PLACES
-    if is_place and table.find('wind_speed') and table.find('wind_direction'):
+    is_wind = table.find('wind_speed') and table.find('wind_direction')
+    stem = folded(Path(table.source).stem)  # as Accelerometer.csv of a phone
+    if is_place and (is_wind or any(words.search(stem) for words in FILES_OF.values())):
         return []
     return [column.index for column in found if column is not None]
 
