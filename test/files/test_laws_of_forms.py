@@ -524,3 +524,40 @@ def test_a_channel_that_was_created_has_feeds_with_times(tmp_path: Path) -> None
     record = read_wind(path, turbulence=False)
     np.testing.assert_allclose(record.velocity[:, 0], 4.4704)
     assert not any('2020' in note for note in record.notes)
+
+
+NAMES = {
+    'series of Prometheus': [
+        '"{__name__=""hill_wind_speed_kmh"", instance=""a:1""}"',
+        '"{__name__=""hill_wind_direction_degrees"", instance=""a:1""}"',
+    ],
+    'series with labels': ['wind_speed_kmh{job="w"}', 'wind_direction_degrees{job="w"}'],
+    'a place': ['north_hill_windSpeed [km/h]', 'north_hill_windDir'],
+    'the mean of two': ['400 Wind speed act. [km/h],Avg wind speed [km/h]', 'Wind dir act.'],
+}
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_names_of_columns_within_others(tmp_path: Path, name: str) -> None:
+    speed, direction = NAMES[name]
+    first = '1,' * speed.count('],')
+    rows = ''.join(f'2026-03-05 14:{n:02}:00,{first}{36 + n},270\n' for n in range(5))
+    path = written(tmp_path, f'Time,{speed},{direction}\n{rows}')
+    record = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], (36 + np.arange(5)) / 3.6)
+
+
+def test_topics_are_names_and_a_sentence_is_no_header(tmp_path: Path) -> None:
+    rows = [
+        f'2026-03-05T14:0{n}:00Z,yard/wx/{topic},{value}'
+        for n in range(5)
+        for topic, value in (('windSpeed_ms', 6), ('windDir', 270), ('battery', 3.2))
+    ]
+    record = read_wind(written(tmp_path, '\n'.join(['time,topic,value', *rows])), turbulence=False)
+    np.testing.assert_allclose(record.velocity, [[6.0, 0.0, 0.0]] * 5, atol=1e-9)
+    prose = (
+        'Time stamps tell the end of the time of a speed.\nDate/Time\tSpeed 9 m\tDirection 8 m\n'
+    )
+    table = ''.join(f'2026-03-05 14:{n}0\t6\t270\n' for n in range(5))
+    record = read_wind(written(tmp_path, prose + table, 'a.txt'), turbulence=False)
+    np.testing.assert_allclose(record.velocity, [[6.0, 0.0, 0.0]] * 5, atol=1e-9)

@@ -54,8 +54,13 @@ _SCALED = re.compile(r'(\d+(?:\.\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
 _IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
 _AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
-_GROUP = re.compile(r'^(?:[^:(\[]*:|\w+ \d+ -)\s*(?=[A-Z])')
-"""Name of a group or channel before that of a column: ``Set 1:Time (s)``, ``Aux 1 - U (m/s)``."""
+_GROUP = re.compile(
+    r'^(?:[^:(\[]*:|\w+ \d+ -)\s*(?=[A-Z])|^\{__name__="|(?<=\w)(?:", |\{).*\}$'
+)
+"""
+Name of a group or channel before that of a column, as in ``Set 1:Time (s)`` and ``Aux 1 - U``, and
+the labels of a series of Prometheus about it.
+"""
 _VALUE = re.compile(r'\.value$', re.IGNORECASE)
 """Last name of a value that has others beside it, as its unit."""
 _INNER = re.compile(r'\.(?=\S)(?<!\d\.(?=\d))')
@@ -121,8 +126,8 @@ _WORD_ENDS = re.compile(r'[\s_]+|\.(?=\D)|(?<=[a-z])(?=[A-Z][a-z]{2})')
 _SPAN = re.compile(r'\d+(minutes?|mins?|mn|hours?|hr|m|(?=\D|$))')
 """Number, height or length of time in a name."""
 
-STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
-"""Name of a station before that of a quantity of the wind."""
+STATION = re.compile(r'(?:sensor\.)?(?:.*[_/])?(?=(?:avg_)?wind|gust)')
+"""Name of a station, or path of a topic, before that of a quantity of the wind."""
 WIND = ('wind_speed', 'wind_direction', 'gust')
 
 _ALL_NAMES = frozenset(name for names in _NAMES.values() for name in names)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from itertools import takewhile
+from os.path import commonprefix
 import re
 
 from tree_sway.files.column_names import (
@@ -34,6 +34,8 @@ _MOST_BELOW = 3
 _NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
 _BETWEEN = re.compile(r'[,;:=\t|()\[\]]|\bin\b')
 """What is between a name, what it means and its unit."""
+_SENTENCE = re.compile(r'[\w\s]*\w{3}\.\s*')
+_WIND = re.compile('wind', re.IGNORECASE)
 _DIGIT = re.compile(r'[-+]?\.?\d')
 _COMMENT = re.compile(r'(?:[#%/ ]+|;) *(?:[Hh]eaders\s*,)? *')
 _PARTS = ('yyyymmdd', 'yyyy', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
@@ -69,7 +71,7 @@ def _names_in(lines: Sequence[str]) -> dict[int, int]:
         is_comment = _is_comment(line)
         if is_comment:
             filled = _cells(_uncommented(line))
-        if len(filled) > 1 and 2 * n_numbers <= len(filled):
+        if len(filled) > 1 and 2 * n_numbers <= len(filled) and not _SENTENCE.fullmatch(line):
             count = sum(map(is_known, {*_without_place(filled[:_MOST_COLUMNS])}))
             (hashed if is_comment else plain)[number] = count
     return plain if max(plain.values(), default=0) > 1 else plain | hashed
@@ -125,9 +127,9 @@ def _read(lines: list[str], source: str) -> TextTable:
 def _without_place(names: Sequence[str]) -> Sequence[str]:
     """Return names without the place that all unknown ones begin with: ``Basel Wind Speed``."""
     unknown = [name for name in names if not is_known(name)]
-    words = zip(*map(str.split, unknown), strict=False) if len(unknown) > 1 else ()
-    place = ' '.join(each[0] for each in takewhile(lambda each: len({*each}) == 1, words))
-    short = [name.removeprefix(place).strip() for name in names]
+    alike = _WIND.split(commonprefix(unknown))[0] if len(unknown) > 1 else ''
+    place = alike[: max(map(alike.rfind, ' _')) + 1]
+    short = [name.removeprefix(place) for name in names]
     return short if any(map(is_known, {*short} - {*names})) else names
 
 
