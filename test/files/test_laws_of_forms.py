@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from datetime import datetime
+from datetime import datetime, UTC
 from json import dumps
 from pathlib import Path
 from typing import Any
@@ -561,3 +561,38 @@ def test_topics_are_names_and_a_sentence_is_no_header(tmp_path: Path) -> None:
     table = ''.join(f'2026-03-05 14:{n}0\t6\t270\n' for n in range(5))
     record = read_wind(written(tmp_path, prose + table, 'a.txt'), turbulence=False)
     np.testing.assert_allclose(record.velocity, [[6.0, 0.0, 0.0]] * 5, atol=1e-9)
+
+
+def test_rows_of_several_heights_are_those_of_the_lowest(tmp_path: Path) -> None:
+    rows = [f'2026-03-05 14:{n}0,{z},{z / 10},270' for n in range(5) for z in (80, 40)]
+    path = written(tmp_path, '\n'.join(['time,height [m],speed [m/s],direction', *rows]))
+    record = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(record.velocity, [[4.0, 0.0, 0.0]] * 5, atol=1e-9)
+    assert 'the wind at 40 of the heights 80, 40' in record.notes
+
+
+def test_paths_of_signal_k_are_in_its_units(tmp_path: Path) -> None:
+    rows = [f'2026-03-05T14:00:0{n}Z,6,4.712389' for n in range(5)]
+    names = 'timestamp,environment.wind.speedTrue,environment.wind.directionTrue'
+    record = read_wind(written(tmp_path, '\n'.join([names, *rows])))
+    np.testing.assert_allclose(record.velocity, [[6.0, 0.0, 0.0]] * 5, atol=1e-4)
+    assert record.notes == ('speeds are in m/s, as Signal K has them',)
+
+
+def test_a_date_and_a_time_in_cells_of_a_spreadsheet_above_a_remark(tmp_path: Path) -> None:
+    clocks = [datetime(2026, 3, 5, 14, 5 * n).time() for n in range(4)]
+    rows = [[datetime(2026, 3, 5), clock, 36 + n, 270] for n, clock in enumerate(clocks)]
+    names = [['Datum', 'Uhrzeit', 'Windgeschw.', 'Windrichtung'], ['', '', 'km/h', '°']]
+    path = workbook(tmp_path / 'a.xlsx', [['Mast'], [], *names, *rows, ['checked by hand']])
+    record = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], (36 + np.arange(4)) / 3.6)
+    assert (record.period, record.refused) == (300.0, 0)
+    assert record.epoch == datetime(2026, 3, 5, 14, tzinfo=UTC).timestamp()
+
+
+def test_means_of_a_long_table_have_their_unit_beside_them(tmp_path: Path) -> None:
+    kinds = (('sensor.roof_wind_speed', 'km/h', 36), ('sensor.roof_wind_direction', '°', 270))
+    rows = [f'{name},{unit},05.03.2026 1{n}:00,1,99,{value}' for name, unit, value in kinds
+            for n in range(5)]  # fmt: skip
+    path = written(tmp_path, '\n'.join(['statistic_id,unit,start,min,max,mean', *rows]))
+    np.testing.assert_allclose(read_wind(path, turbulence=False).velocity[:, 0], 10.0)

@@ -46,7 +46,6 @@ def expected(path: Path, *kinds: str) -> Iterator[None]:
 def kind_of(path: Path) -> str:
     """Return the kind of a file by its beginning; empty if nothing tells it."""
     with suppress(TreeSwayError):
-        from tree_sway.files.scenes.inventory.inventory_file import lacking_columns
         from tree_sway.files.scenes.stand_table import is_stand_table
         from tree_sway.files.trees.tree_formats import TREE_FORMATS
         from tree_sway.files.wind.wind_formats import WIND_FORMATS
@@ -58,10 +57,9 @@ def kind_of(path: Path) -> str:
         if head.startswith('time [s],wind_x [m/s],'):
             return 'sway'
         if head.startswith(ZIP_BEGINS):
-            name, lines = table_in(
-                path, lambda text: lacking_columns(text) == [] or looks_like_wind(text)
-            )
-            path, head = Path(name), '\n'.join(lines[:_ROWS])
+            lines = table_in(path, looks_like_wind)[1]
+            if found := _kind_of_table('\n'.join(lines[:_ROWS])):
+                return found
         if is_stand_table(head, path):
             return 'inventory'
         sure = (each for each in WIND_FORMATS if each.name not in ('toa5', 'sonic', 'csv'))

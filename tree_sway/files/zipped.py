@@ -24,7 +24,6 @@ _HEAD = 200
 _MOST_BYTES = 64 << 20
 """Largest size of all tables of a zip that are unpacked [bytes]."""
 _SUFFIXES = ('.csv', '.txt', '.tsv', '.dat', '.data', '.log', '.tab', '.json')
-_WORKBOOK = 'xl/workbook.xml'
 
 
 def table_in(path: Path, is_wanted: Callable[[str], bool]) -> tuple[str, list[str]]:
@@ -40,6 +39,11 @@ def tables_in(path: Path) -> Iterator[tuple[str, list[str]]]:
 
     Raises a `FormatError` for a broken zip, one without a table, or one that is too large.
     """
+    if path.suffix.lower() in ('.xlsx', '.xlsm'):
+        for number, rows in enumerate(sheets_of(path), start=1):
+            lines = ('\t'.join(map(' '.join, map(str.split, row))) for row in rows)
+            yield f'{path}/sheet {number}', [line.replace('"', ' ') for line in lines]
+        return
     if not read_bytes(path, 4) or not is_zipfile(path):
         yield str(path), read_lines(path)
         return
@@ -47,11 +51,6 @@ def tables_in(path: Path) -> Iterator[tuple[str, list[str]]]:
     try:
         with ZipFile(path) as archive:
             files = [each for each in archive.infolist() if not each.is_dir()]
-            if any(each.filename == _WORKBOOK for each in files):
-                for number, rows in enumerate(sheets_of(path), start=1):
-                    lines = ('\t'.join(map(' '.join, map(str.split, row))) for row in rows)
-                    yield f'{path}/sheet {number}', [line.replace('"', ' ') for line in lines]
-                return
             found = [each for each in files if Path(each.filename).suffix.lower() in _SUFFIXES]
             if not found or len(files) > _MOST_FILES:
                 raise FormatError(

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from tree_sway.errors import FormatError, inside
 from tree_sway.files.foreign_file import foreign_file
-from tree_sway.files.layouts.badc_csv import BADC_CSV
 from tree_sway.files.layouts.csiro import CSIRO
 from tree_sway.files.layouts.jma import JMA
 from tree_sway.files.layouts.json_tables import JSON
@@ -22,7 +21,7 @@ from tree_sway.files.layouts.weatherlink_text import WEATHERLINK_TEXT
 from tree_sway.files.table_file import TextTable
 
 _LAYOUTS = (
-    *(JSON, WEATHERLINK_TEXT, BADC_CSV, CSIRO, JMA, MONITOR),
+    *(JSON, WEATHERLINK_TEXT, CSIRO, JMA, MONITOR),
     *LINES,
     PLAIN,
 )

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from os.path import commonprefix
+from itertools import takewhile
 import re
 
 from tree_sway.files.column_names import (
@@ -25,17 +25,18 @@ from tree_sway.files.column_names import (
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import parse_table, separator_of, split_row, TextTable
 
-_HEAD, _LONG_HEAD = 40, 200
-"""Lines in which the header is, and where none of them names two quantities."""
+_HEAD = 200
 _CAMPBELL = '"TOA5"', 'TOA5'
 _HEAD_ENDS = '***End_of_Header***'
 _MOST_COLUMNS = 200
 _MOST_BELOW = 3
 _NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
+_FILLED = re.compile(r'\d|\S\s*[,;\t]\s*\S')
+"""Number or two cells; a last line without them is a remark."""
 _BETWEEN = re.compile(r'[,;:=\t|()\[\]]|\bin\b')
 """What is between a name, what it means and its unit."""
-_SENTENCE = re.compile(r'[\w\s]*\w{3}\.\s*')
-_WIND = re.compile('wind', re.IGNORECASE)
+_COMMENTED = re.compile(r'#|%|//|;[^;]*$|[\w\s]*\w{3}\.\s*$')
+_PLACE = re.compile(r'(?:(?!wind).)*?(?=wind)|(?:.*[ _])?', re.IGNORECASE)
 _DIGIT = re.compile(r'[-+]?\.?\d')
 _COMMENT = re.compile(r'(?:[#%/ ]+|;) *(?:[Hh]eaders\s*,)? *')
 _PARTS = ('yyyymmdd', 'yyyy', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
@@ -49,37 +50,29 @@ def header_line(lines: Sequence[str]) -> int | None:
     """
     Line of the header: the first of those that name most quantities.
 
-    A comment is one only where no other line names two. It is below the heads of LabVIEW, and
-    below the settings of a logger, each of which names one.
+    A comment is one only where no other line names two. It is below the heads of LabVIEW.
     """
-    found = _names_in(lines[:_HEAD])
-    if max(found.values(), default=0) < 2:
-        found = _names_in(lines[:_LONG_HEAD])
-    most = max(found, key=lambda number: found[number], default=None)
-    return most if most is not None and found[most] else None
-
-
-def _names_in(lines: Sequence[str]) -> dict[int, int]:
-    """Return how many quantities the lines name that may be a header."""
     plain: dict[int, int] = {}
     hashed: dict[int, int] = {}
-    ends = (number for number, line in enumerate(lines) if line.startswith(_HEAD_ENDS))
+    ends = (number for number, line in enumerate(lines[:_HEAD]) if line.startswith(_HEAD_ENDS))
     first = max(ends, default=0)
-    for number, line in enumerate(lines[first:], start=first):
+    for number, line in enumerate(lines[first:_HEAD], start=first):
         filled = list(filter(None, _cells(line)))
         n_numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
         is_comment = _is_comment(line)
         if is_comment:
             filled = _cells(_uncommented(line))
-        if len(filled) > 1 and 2 * n_numbers <= len(filled) and not _SENTENCE.fullmatch(line):
+        if len(filled) > 1 and 2 * n_numbers <= len(filled):
             count = sum(map(is_known, {*_without_place(filled[:_MOST_COLUMNS])}))
             (hashed if is_comment else plain)[number] = count
-    return plain if max(plain.values(), default=0) > 1 else plain | hashed
+    found = plain if max(plain.values(), default=0) > 1 else plain | hashed
+    most = max(found, key=lambda number: found[number], default=None)
+    return most if most is not None and found[most] else None
 
 
 def _is_comment(line: str) -> bool:
-    """Whether a line is a comment; a semicolon before the others is an empty cell."""
-    return line.startswith(('#', '%', '//')) or (line.startswith(';') and line.count(';') == 1)
+    """Whether a line is a comment or prose; a semicolon before the others is an empty cell."""
+    return _COMMENTED.match(line) is not None
 
 
 def _uncommented(line: str) -> str:
@@ -107,6 +100,8 @@ def _is_table(lines: Sequence[str]) -> bool:
 
 
 def _read(lines: list[str], source: str) -> TextTable:
+    while len(lines) > 1 and _FILLED.search(lines[-1]) is None:
+        lines.pop()
     lines = lines or ['']
     first = header_line(lines) or 0
     above = tuple(lines[:first])
@@ -127,8 +122,9 @@ def _read(lines: list[str], source: str) -> TextTable:
 def _without_place(names: Sequence[str]) -> Sequence[str]:
     """Return names without the place that all unknown ones begin with: ``Basel Wind Speed``."""
     unknown = [name for name in names if not is_known(name)]
-    alike = _WIND.split(commonprefix(unknown))[0] if len(unknown) > 1 else ''
-    place = alike[: max(map(alike.rfind, ' _')) + 1]
+    letters = zip(*unknown, strict=False) if len(unknown) > 1 else ()
+    alike = ''.join(each[0] for each in takewhile(lambda each: len({*each}) == 1, letters))
+    place = _PLACE.findall(alike)[0]
     short = [name.removeprefix(place) for name in names]
     return short if any(map(is_known, {*short} - {*names})) else names
 

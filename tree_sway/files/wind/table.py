@@ -17,6 +17,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 import re
 
@@ -30,6 +31,7 @@ from tree_sway.files.layouts.known import looks_like_wind, table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import Column, TextTable
+from tree_sway.files.text_file import finite
 from tree_sway.files.wind.cell_units import with_units_in_head
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.row_winds import winds_of_components, winds_of_directions
@@ -124,6 +126,13 @@ def read_table_wind(
 
 def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
     """Return a table with the columns of the lowest height of each wind alone, and which it is."""
+    for index in table.find_all('height')[:1]:
+        rows = table.rows_by(index)
+        sizes = {*map(len, rows.values())}
+        if len(rows) > 1 and len(sizes) == 1 and sizes != {1}:
+            least = min(rows, key=lambda height: finite(height) or inf)
+            note = f'the wind at {least} of the heights {", ".join(rows)[:80]}'
+            return table.part(rows[least]), note
     heights = list[tuple[str, int, float]]()
     lowest: dict[str, float] = {}
     names = list(table.columns)
@@ -207,7 +216,8 @@ def _doubt(table: TextTable, direction: Column | float) -> str:
         return ''
     values = table.values([direction.index])
     known = np.abs(values[np.isfinite(values)])
-    if (known > _CIRCLE).any() or not (known % 1.0).any():
+    is_told = maker_of(table).get('direction')
+    if is_told or (known > _CIRCLE).any() or not (known % 1.0).any():
         return ''
     name = table.columns[direction.index]
     return f'no {name} is above 6.3: taken in degrees; call it {name} [rad] if it is'
