@@ -148,7 +148,7 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
         return table, ''
     for quantity, index, height in heights:
         names[index] = names[index] if height == lowest[quantity] else ''
-    known = {height for _, _, height in heights}
+    known = {height for quantity, _, height in heights if quantity != 'wind_direction'}
     first = lowest.get('wind_speed', next(iter(lowest.values())))
     others = sorted(known - {first})
     more = f'; there is one at {", ".join(f"{each:g}" for each in others)} m' if others else ''
