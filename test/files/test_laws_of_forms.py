@@ -214,6 +214,7 @@ def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
         ('a.csv', 'Trajectories\n120\n,,A,,\nFrame,Sub Frame,X,Y,Z\n', 'frames are no times'),
         ('a.log', 'a/g:\t702\t422\t4139\t-39\t9\t-8\n', 'whose range and rate are set in its'),
         ('a.csv', '--- Data Table File Created By ActiGraph ---\n', 'counts of an activity'),
+        ('a.txt', 'wx,at=roof speed=4.0,dir=250 1709647200000000000\nwx,at=a', 'of InfluxDB'),
         ('log.csv', '!Boat,Utc,TWS\n!boat,0,5\n0,45858.5,5,12.1\n', 'pairs of the number'),
         ('a.mnd', 'FORMAT-1\n2024-03-05 00:00:00 0\nSFAS\n', 'profiles of a sodar in blocks'),
     ],
@@ -596,3 +597,24 @@ def test_means_of_a_long_table_have_their_unit_beside_them(tmp_path: Path) -> No
             for n in range(5)]  # fmt: skip
     path = written(tmp_path, '\n'.join(['statistic_id,unit,start,min,max,mean', *rows]))
     np.testing.assert_allclose(read_wind(path, turbulence=False).velocity[:, 0], 10.0)
+
+
+@pytest.mark.parametrize('name', ['a.txt', 'a.log'])
+def test_pairs_behind_a_date(tmp_path: Path, name: str) -> None:
+    rows = [f'2026-03-05T14:00:0{n}Z wind_speed={n + 4} wind_dir=270 gust=11.5' for n in range(5)]
+    record = read_wind(written(tmp_path, '\n'.join(rows), name))
+    np.testing.assert_allclose(record.velocity[:, 0], np.arange(5) + 4)
+    assert record.epoch == datetime(2026, 3, 5, 14, tzinfo=UTC).timestamp()
+    assert record.gust is not None
+    np.testing.assert_allclose(record.gust, 11.5)
+
+
+def test_units_of_settings_in_german_and_labels_in_braces(tmp_path: Path) -> None:
+    head = 'Station;Forst 4\nEinheit Wind;km/h\n\nDatum;Windgeschwindigkeit Mittel;Windrichtung\n'
+    rows = ''.join(f'05.03.2026 14:{n}0;{36 + n},5;270\n' for n in range(5))
+    record = read_wind(written(tmp_path, head + rows), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], (36.5 + np.arange(5)) / 3.6)
+    head = '"Time","wind_speed [kn] {mast: 2}","wind_direction {mast: 2}"\n'
+    rows = ''.join(f'2026-03-05 14:{n}0:00,10,270\n' for n in range(5))
+    record = read_wind(written(tmp_path, head + rows), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], 10 * 1852 / 3600)

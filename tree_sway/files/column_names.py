@@ -54,7 +54,7 @@ _SCALED = re.compile(r'(\d+(?:\.\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
 _IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
 _AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
-_GROUP = re.compile(r'^(?:[^:(\[]*:|\w+ \d+ -)\s*(?=[A-Z])|^\{__name__="|(?<=\w)(?:", |\{).*\}$')
+_GROUP = re.compile(r'^(?:[^:(\[]*:|\w+ \d+ -)\s*(?=[A-Z])|^\{__name__="|(?<=\w)(?:", | ?\{).*\}$')
 """
 Name of a group or channel before that of a column, as in ``Set 1:Time (s)`` and ``Aux 1 - U``, and
 the labels of a series of Prometheus about it.
