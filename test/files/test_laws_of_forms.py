@@ -610,7 +610,7 @@ def test_pairs_behind_a_date(tmp_path: Path, name: str) -> None:
 
 
 def test_units_of_settings_in_german_and_labels_in_braces(tmp_path: Path) -> None:
-    head = 'Station;Forst 4\nEinheit Wind;km/h\n\nDatum;Windgeschwindigkeit Mittel;Windrichtung\n'
+    head = 'Station;Hang 4\nEinheit Wind;km/h\n\nDatum;Windgeschwindigkeit Mittel;Windrichtung\n'
     rows = ''.join(f'05.03.2026 14:{n}0;{36 + n},5;270\n' for n in range(5))
     record = read_wind(written(tmp_path, head + rows), turbulence=False)
     np.testing.assert_allclose(record.velocity[:, 0], (36.5 + np.arange(5)) / 3.6)
