@@ -54,7 +54,9 @@ _SCALED = re.compile(r'(\d+(?:\.\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
 _IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
 _AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
-_GROUP = re.compile(r'^(?:[^:(\[]*:|\w+ \d+ -)\s*(?=[A-Z])|^\{__name__="|(?<=\w)(?:", | ?\{).*\}$')
+_GROUP = re.compile(
+    r'^(?:[^:(\[]*:|\w+ \d+ -)\s*(?=[A-Z])|^\{__name__="|(?<=\w)(?:", | ?\{).{0,500}\}$'
+)
 """
 Name of a group or channel before that of a column, as in ``Set 1:Time (s)`` and ``Aux 1 - U``, and
 the labels of a series of Prometheus about it.
@@ -205,6 +207,7 @@ def is_wind(name: str) -> bool:
     return is_named(plain, *WIND)
 
 
+@lru_cache(8192)
 def _roles(name: str) -> str:
     """Return a folded name with a capital letter in place of each word that is known."""
     words = _WORD.sub(lambda word: _ROLES[word[0]], _SPAN.sub('', name))

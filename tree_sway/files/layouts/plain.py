@@ -31,8 +31,8 @@ _HEAD_ENDS = '***End_of_Header***'
 _MOST_COLUMNS = 200
 _MOST_BELOW = 3
 _NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
-_FILLED = re.compile(r'\d|\S\s*[,;\t]\s*\S')
-"""Number or two cells; a last line without them is a remark."""
+_REMARK = re.compile(r'(?:[^\W\d]|[ .:])*[,;\t]*')
+"""One cell of words in a last line."""
 _BETWEEN = re.compile(r'[,;:=\t|()\[\]]|\bin\b')
 """What is between a name, what it means and its unit."""
 _COMMENTED = re.compile(r'#|%|//|;[^;]*$|[\w\s]*\w{3}\.\s*$')
@@ -100,7 +100,7 @@ def _is_table(lines: Sequence[str]) -> bool:
 
 
 def _read(lines: list[str], source: str) -> TextTable:
-    while len(lines) > 1 and _FILLED.search(lines[-1]) is None:
+    while len(lines) > 1 and _REMARK.fullmatch(lines[-1]):
         lines.pop()
     lines = lines or ['']
     first = header_line(lines) or 0
@@ -124,7 +124,7 @@ def _without_place(names: Sequence[str]) -> Sequence[str]:
     unknown = [name for name in names if not is_known(name)]
     letters = zip(*unknown, strict=False) if len(unknown) > 1 else ()
     alike = ''.join(each[0] for each in takewhile(lambda each: len({*each}) == 1, letters))
-    place = _PLACE.findall(alike)[0]
+    place = next(_PLACE.finditer(alike))[0]
     short = [name.removeprefix(place) for name in names]
     return short if any(map(is_known, {*short} - {*names})) else names
 
