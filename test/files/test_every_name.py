@@ -224,6 +224,7 @@ def test_every_set_of_parts_makes_a_time(parts: tuple[str, ...]) -> None:
         'yearmonthdayhourminutesinyyyy': '2026', 'miformatinlocaltime': '0',
         'timestamp1': '2026-03-01', 'timestamp2': '{k}00', 'doy': '60',
         'sec': '177232320{k}', 'headerstampsec': '177232320{k}', 'headerstampsecs': '177232320{k}',
+        'seconds': '177232320{k}', 'nanoseconds': '0',
         'nanosec': '0', 'headerstampnanosec': '0', 'headerstampnsecs': '0',
         'm': '3', 'd': '1', 'datapomiaru': '2026-03-01', 'godzinapomiaru': '{k}',
     }  # fmt: skip

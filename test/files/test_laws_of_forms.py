@@ -4,8 +4,11 @@
 
 from __future__ import annotations
 
+from datetime import datetime, UTC
 from json import dumps
 from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -211,6 +214,8 @@ def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
         ('a.csv', 'Trajectories\n120\n,,A,,\nFrame,Sub Frame,X,Y,Z\n', 'frames are no times'),
         ('a.log', 'a/g:\t702\t422\t4139\t-39\t9\t-8\n', 'whose range and rate are set in its'),
         ('a.csv', '--- Data Table File Created By ActiGraph ---\n', 'counts of an activity'),
+        ('a.txt', 'wx,at=roof speed=4.0,dir=250 1709647200000000000\nwx,at=a', 'of InfluxDB'),
+        ('log.csv', '!Boat,Utc,TWS\n!boat,0,5\n0,45858.5,5,12.1\n', 'pairs of the number'),
         ('a.mnd', 'FORMAT-1\n2024-03-05 00:00:00 0\nSFAS\n', 'profiles of a sodar in blocks'),
     ],
 )
@@ -381,3 +386,235 @@ def test_a_given_unit_is_that_of_components_too(tmp_path: Path) -> None:
     np.testing.assert_allclose(wind.velocity[:, 0], [10.0, 5.0])
     assert 'speeds are taken in km/h, as given' in wind.notes
     assert 'taken in m/s' in read_wind(path).notes[0]
+
+
+def settings(count: int, key: str) -> str:
+    """Lines of a logger's settings above its table, each a key and a value."""
+    return ''.join(f'{key} {n}\t{n}.5\n' for n in range(count))
+
+
+@pytest.mark.parametrize('count', [5, 90])
+def test_a_table_begins_below_settings_of_any_length(tmp_path: Path, count: int) -> None:
+    text = settings(count, 'Speed of fan') + 'Speed units:\tkn\nData\nTime\tMean speed\tMean dir\n'
+    rows = ''.join(f'2026-03-05 14:{n}0:00\t{n + 4}\t270\n' for n in range(5))
+    record = read_wind(written(tmp_path, text + rows, 'mast.txt'), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], (np.arange(5) + 4) * 1852 / 3600)
+    assert record.period == 600.0
+
+
+@pytest.mark.parametrize(
+    ('units', 'factor'), [('Units,mph\n', 0.44704), ('Units,mph\nUnits,m/s\n', 1.0)]
+)
+def test_a_unit_of_all_channels_is_that_of_the_speed(
+    tmp_path: Path, units: str, factor: float
+) -> None:
+    head = f'[Channel 1]\n{units}Height,40\nTime Stamp,Average Speed,Average Direction\n'
+    rows = ''.join(f'3/14/26 9:{n}0,{n + 4},270\n' for n in range(5))
+    record = read_wind(written(tmp_path, head + rows), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], (np.arange(5) + 4) * factor)
+    assert any('no unit of the speed' in note for note in record.notes) == (factor == 1.0)
+
+
+def test_a_spread_of_the_wind_is_no_speed_and_a_gust_is_before_a_maximum(tmp_path: Path) -> None:
+    kinds = ('SD', 'Avg', 'Max', 'Gust')
+    names = '\t'.join(f'Ch4_Anem_25.50m_W_{kind}_m/s' for kind in kinds)
+    head = f'Timestamp\t{names}\tCh9_Vane_24.00m_N_SD_Deg\tCh9_Vane_24.00m_N_Avg_Deg\n'
+    rows = ''.join(f'2026-03-05 14:{n}0:00\t1\t6\t11\t9\t2\t270\n' for n in range(5))
+    record = read_wind(written(tmp_path, head + rows, 'a.txt'), turbulence=False)
+    np.testing.assert_allclose(record.velocity, [[6.0, 0.0, 0.0]] * 5, atol=1e-9)
+    assert record.gust is not None
+    np.testing.assert_allclose(record.gust, 9.0)
+
+
+def test_an_archive_is_known_by_its_content(tmp_path: Path) -> None:
+    names = 'DATAH\tSeconds\tNanoseconds\tDate\tTime\tAux 1 - U (m/s)\tAux 2 - V (m/s)\n'
+    rows = [f'DATA\t{BEGIN}\t{n}00000000\t2024-03-05\t09:00:00:{n}00\t{n}\t-1\n' for n in range(4)]
+    with ZipFile(tmp_path / 'tower.ghg', 'w') as archive:
+        archive.writestr('tower.metadata', '[Site]\nheight=3\n')
+        archive.writestr('tower.data', 'Model:\tA\n' + names + ''.join(rows))
+    record = read_wind(tmp_path / 'tower.ghg')
+    np.testing.assert_allclose(record.velocity, [[n, -1, 0] for n in range(4)])
+    np.testing.assert_allclose(record.time, 0.1 * np.arange(4), atol=1e-6)
+    assert record.epoch == BEGIN
+
+
+def workbook(path: Path, *sheets: list[list[Any]]) -> Path:
+    """Write a spreadsheet with the rows of its sheets."""
+    openpyxl = pytest.importorskip('openpyxl', reason='the extra inventory is not installed')
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for rows in sheets:
+        sheet = book.create_sheet()
+        for row in rows:
+            sheet.append(row)
+    book.save(path)
+    return path
+
+
+def test_a_wind_in_a_spreadsheet_below_several_header_rows(tmp_path: Path) -> None:
+    head = [['x6', 'Port 1', 'Port 1'], ['9 records', 'Station', 'Station']]
+    names = [['Timestamps', ' ° Wind Direction', ' mph Wind Speed', ' mph Gust Speed']]
+    rows = [[datetime(2026, 3, 5, n), 270, 10 + n, '#N/A' if n else 20] for n in range(4)]
+    path = workbook(tmp_path / 'a.xlsx', [['about']], head + names + rows)
+    record = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], (np.arange(4) + 10) * 0.44704)
+    assert record.gust is not None
+    np.testing.assert_allclose(record.gust, [20 * 0.44704, *[np.nan] * 3])
+    with pytest.raises(FormatError, match='a record of wind, not a record of motion'):
+        read_motion(path)
+
+
+def test_a_spreadsheet_of_trees_is_no_wind(tmp_path: Path) -> None:
+    trees = [['x', 'y', 'species', 'height'], [0, 0, 'oak', 12], [5, 0, 'ash', 13]]
+    path = workbook(tmp_path / 'a.xlsx', [['about']], trees)
+    with pytest.raises(FormatError, match='an inventory of trees, not a record of wind'):
+        read_wind(path)
+
+
+def test_an_acceleration_of_a_phone_is_no_wind(tmp_path: Path) -> None:
+    with ZipFile(tmp_path / 'a.zip', 'w') as archive:
+        archive.writestr('Accelerometer.csv', 'time,x,y,z\n0,0.1,0,9.8\n0.02,0.2,0,9.8\n')
+    with pytest.raises(FormatError, match='no column for the speed'):
+        read_wind(tmp_path / 'a.zip')
+
+
+def history(kinds: dict[str, str], lag: float, unit: str = '') -> str:
+    """Rows of one entity after another, of which each is a lag [s] behind the one before."""
+    rows = [
+        f'{unit_of},{name},{4 + n if "speed" in name else 270},'
+        f'2026-03-05T14:{n:02d}:{lag * k:06.3f}Z'
+        for k, (name, unit_of) in enumerate(kinds.items())
+        for n in range(6)
+    ]
+    return '\n'.join([unit, *rows])
+
+
+@pytest.mark.parametrize(('lag', 'count'), [(0.0, 6), (0.4, 6), (20.0, 11)])
+def test_values_of_entities_belong_together_where_they_are_much_less_than_a_sample_apart(
+    tmp_path: Path, lag: float, count: int
+) -> None:
+    kinds = {'roof_wind_speed': 'km/h', 'roof_wind_direction': '°', 'roof_battery': '%'}
+    text = history(kinds, lag, '_measurement,entity_id,_value,_time')
+    record = read_wind(written(tmp_path, text), turbulence=False)
+    speeds = (np.arange(6) + 4) / 3.6
+    np.testing.assert_allclose(np.unique(record.velocity[:, 0]), speeds)
+    assert (len(record.time), record.refused) == (count, int(lag > 6.0))
+
+
+def test_a_history_without_units_asks_for_them(tmp_path: Path) -> None:
+    kinds = {'sensor.hof_windgeschwindigkeit_speed': '', 'sensor.hof_windrichtung': ''}
+    text = history(kinds, 0.4, 'x,entity_id,state,last_changed').replace('keit_speed', 'keit')
+    path = written(tmp_path, text.replace('270', '8').replace(',4,', ',8,'))
+    with pytest.raises(FormatError, match='does not say the unit of the speed') as raised:
+        read_wind(path)
+    assert '--wind-option speed_unit' in raised.value.cure
+    assert len(read_wind(path, speed_unit='km/h', turbulence=False).time) == 6
+
+
+def test_a_channel_that_was_created_has_feeds_with_times(tmp_path: Path) -> None:
+    channel = {
+        'field1': 'Wind Speed (mph)',
+        'field2': 'Wind Direction',
+        'created_at': '2020-01-01T00:00:00Z',
+    }
+    feeds = [
+        {'created_at': f'2026-03-05T14:0{n}:00Z', 'field1': '10', 'field2': '270'}
+        for n in range(4)
+    ]
+    path = written(tmp_path, dumps({'channel': channel, 'feeds': feeds}), 'a.json')
+    record = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], 4.4704)
+    assert not any('2020' in note for note in record.notes)
+
+
+NAMES = {
+    'series of Prometheus': [
+        '"{__name__=""hill_wind_speed_kmh"", instance=""a:1""}"',
+        '"{__name__=""hill_wind_direction_degrees"", instance=""a:1""}"',
+    ],
+    'series with labels': ['wind_speed_kmh{job="w"}', 'wind_direction_degrees{job="w"}'],
+    'a place': ['north_hill_windSpeed [km/h]', 'north_hill_windDir'],
+    'the mean of two': ['400 Wind speed act. [km/h],Avg wind speed [km/h]', 'Wind dir act.'],
+}
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_names_of_columns_within_others(tmp_path: Path, name: str) -> None:
+    speed, direction = NAMES[name]
+    first = '1,' * speed.count('],')
+    rows = ''.join(f'2026-03-05 14:{n:02}:00,{first}{36 + n},270\n' for n in range(5))
+    path = written(tmp_path, f'Time,{speed},{direction}\n{rows}')
+    record = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], (36 + np.arange(5)) / 3.6)
+
+
+def test_topics_are_names_and_a_sentence_is_no_header(tmp_path: Path) -> None:
+    rows = [
+        f'2026-03-05T14:0{n}:00Z,yard/wx/{topic},{value}'
+        for n in range(5)
+        for topic, value in (('windSpeed_ms', 6), ('windDir', 270), ('battery', 3.2))
+    ]
+    record = read_wind(written(tmp_path, '\n'.join(['time,topic,value', *rows])), turbulence=False)
+    np.testing.assert_allclose(record.velocity, [[6.0, 0.0, 0.0]] * 5, atol=1e-9)
+    prose = (
+        'Time stamps tell the end of the time of a speed.\nDate/Time\tSpeed 9 m\tDirection 8 m\n'
+    )
+    table = ''.join(f'2026-03-05 14:{n}0\t6\t270\n' for n in range(5))
+    record = read_wind(written(tmp_path, prose + table, 'a.txt'), turbulence=False)
+    np.testing.assert_allclose(record.velocity, [[6.0, 0.0, 0.0]] * 5, atol=1e-9)
+
+
+def test_rows_of_several_heights_are_those_of_the_lowest(tmp_path: Path) -> None:
+    rows = [f'2026-03-05 14:{n}0,{z},{z / 10},270' for n in range(5) for z in (80, 40)]
+    path = written(tmp_path, '\n'.join(['time,height [m],speed [m/s],direction', *rows]))
+    record = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(record.velocity, [[4.0, 0.0, 0.0]] * 5, atol=1e-9)
+    assert 'the wind at 40 of the heights 80, 40' in record.notes
+
+
+def test_paths_of_signal_k_are_in_its_units(tmp_path: Path) -> None:
+    rows = [f'2026-03-05T14:00:0{n}Z,6,4.712389' for n in range(5)]
+    names = 'timestamp,environment.wind.speedTrue,environment.wind.directionTrue'
+    record = read_wind(written(tmp_path, '\n'.join([names, *rows])))
+    np.testing.assert_allclose(record.velocity, [[6.0, 0.0, 0.0]] * 5, atol=1e-4)
+    assert record.notes == ('speeds are in m/s, as Signal K has them',)
+
+
+def test_a_date_and_a_time_in_cells_of_a_spreadsheet_above_a_remark(tmp_path: Path) -> None:
+    clocks = [datetime(2026, 3, 5, 14, 5 * n).time() for n in range(4)]
+    rows = [[datetime(2026, 3, 5), clock, 36 + n, 270] for n, clock in enumerate(clocks)]
+    names = [['Datum', 'Uhrzeit', 'Windgeschw.', 'Windrichtung'], ['', '', 'km/h', '°']]
+    path = workbook(tmp_path / 'a.xlsx', [['Mast'], [], *names, *rows, ['checked by hand']])
+    record = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], (36 + np.arange(4)) / 3.6)
+    assert (record.period, record.refused) == (300.0, 0)
+    assert record.epoch == datetime(2026, 3, 5, 14, tzinfo=UTC).timestamp()
+
+
+def test_means_of_a_long_table_have_their_unit_beside_them(tmp_path: Path) -> None:
+    kinds = (('sensor.roof_wind_speed', 'km/h', 36), ('sensor.roof_wind_direction', '°', 270))
+    rows = [f'{name},{unit},05.03.2026 1{n}:00,1,99,{value}' for name, unit, value in kinds
+            for n in range(5)]  # fmt: skip
+    path = written(tmp_path, '\n'.join(['statistic_id,unit,start,min,max,mean', *rows]))
+    np.testing.assert_allclose(read_wind(path, turbulence=False).velocity[:, 0], 10.0)
+
+
+@pytest.mark.parametrize('name', ['a.txt', 'a.log'])
+def test_pairs_behind_a_date(tmp_path: Path, name: str) -> None:
+    rows = [f'2026-03-05T14:00:0{n}Z wind_speed={n + 4} wind_dir=270 gust=11.5' for n in range(5)]
+    record = read_wind(written(tmp_path, '\n'.join(rows), name))
+    np.testing.assert_allclose(record.velocity[:, 0], np.arange(5) + 4)
+    assert record.epoch == datetime(2026, 3, 5, 14, tzinfo=UTC).timestamp()
+    assert record.gust is not None
+    np.testing.assert_allclose(record.gust, 11.5)
+
+
+def test_units_of_settings_in_german_and_labels_in_braces(tmp_path: Path) -> None:
+    head = 'Station;Hang 4\nEinheit Wind;km/h\n\nDatum;Windgeschwindigkeit Mittel;Windrichtung\n'
+    rows = ''.join(f'05.03.2026 14:{n}0;{36 + n},5;270\n' for n in range(5))
+    record = read_wind(written(tmp_path, head + rows), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], (36.5 + np.arange(5)) / 3.6)
+    head = '"Time","wind_speed [kn] {mast: 2}","wind_direction {mast: 2}"\n'
+    rows = ''.join(f'2026-03-05 14:{n}0:00,10,270\n' for n in range(5))
+    record = read_wind(written(tmp_path, head + rows), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], 10 * 1852 / 3600)

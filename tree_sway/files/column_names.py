@@ -69,12 +69,17 @@ _IN_BRACKETS = re.compile(r'(?:[\[(]|\s-\s)([xyzXYZ])(?:[\])]|(?=\s|$))')
 """Axis in brackets or behind a sign, as in ``Acceleration - x (m/s²)``."""
 _AXIS_WORD = re.compile(_KNOWN['axis_word'])
 """Folded name with its axis in front, as ``xacc`` and ``nstilt``, or with a word as its end."""
-_GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
-"""Name of a group before that of a column, as in ``Data Set 1:Time (s)``."""
+_GROUP = re.compile(
+    r'^(?:[^:(\[]*:|\w+ \d+ -)\s*(?=[A-Z])|^\{__name__="|(?<=\w)(?:", | ?\{).{0,500}\}$'
+)
+"""
+Name of a group or channel before that of a column, as in ``Set 1:Time (s)`` and ``Aux 1 - U``, and
+the labels of a series of Prometheus about it.
+"""
 _VALUE = re.compile(r'\.value$', re.IGNORECASE)
 """Last name of a value that has others beside it, as its unit."""
-_INNER = re.compile(r'\.(?=\S)')
-"""Sign between the names of groups."""
+_INNER = re.compile(r'\.(?=\S)(?<!\d\.(?=\d))')
+"""Sign between the names of groups, and not that of a decimal."""
 _YEAR = re.compile(r'(?<=[^\W\d])[_ .-]?((?:19|20)\d\d)(?!\d)')
 """Year of a measurement behind the name of what was measured."""
 _SHORTEST_GLUED = 4
@@ -87,10 +92,13 @@ _LONGEST_NAME = 200
 """Characters of the longest name whose words are compared with units."""
 _ENDLESS = 2000
 """Characters above which a header has no end and is no name."""
+_LAST = re.compile('in|[a-z]')
+"""Units that are so only at the end of a name."""
 _IN = re.compile(r'^(in|en)(?=\w)')
 """Word between a name and its unit."""
 
 
+@lru_cache(8192)
 def folded(text: str) -> str:
     """Letters and digits of a text in lower case, without accents, umlauts as ae, oe and ue."""
     lower = unicodedata.normalize('NFC', text).lower().translate(_UMLAUTS)
@@ -120,8 +128,10 @@ _NAMES = {
 }
 """Names of each quantity, best first: those of one letter last, as t may be a temperature."""
 
-_PATTERNS = {quantity: re.compile(known) for quantity, known in _KNOWN['patterns'].items()}
-"""Names that vary, as with the number of an instrument in them, folded, or by their `_roles`."""
+_PATTERNS = {
+    quantity: [*map(re.compile, known.split())] for quantity, known in _KNOWN['patterns'].items()
+}
+"""Names that vary, folded or by their `_roles`, as by the number of an instrument; best first."""
 
 _ROLES = {folded(word): role for role, words in _KNOWN['words'].items() for word in words.split()}
 """Words of many languages that names consist of, folded, and letters for what they say."""
@@ -131,8 +141,8 @@ _WORD_ENDS = re.compile(r'[\s_]+|\.(?=\D)|(?<=[a-z])(?=[A-Z][a-z]{2})')
 _SPAN = re.compile(r'\d+(minutes?|mins?|mn|hours?|hr|m|(?=\D|$))')
 """Number, height or length of time in a name."""
 
-STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
-"""Name of a station before that of a quantity of the wind."""
+STATION = re.compile(r'(?:sensor\.)?(?:.*[_/])?(?=(?:avg_)?wind|gust)')
+"""Name of a station, or path of a topic, before that of a quantity of the wind."""
 WIND = ('wind_speed', 'wind_direction', 'gust')
 
 _ALL_NAMES = frozenset(name for names in _NAMES.values() for name in names)
@@ -194,10 +204,11 @@ def rank_of(column: str, quantity: str) -> int | None:
     for rank, known in enumerate(_NAMES[quantity]):
         if known in found or _glued_unit(inner, known, kind) or _is_cut(column, known):
             return rank
-    pattern = _PATTERNS.get(quantity)
-    forms = filter(None, (*found, *map(_roles, found)))
-    is_like = pattern is not None and any(map(pattern.fullmatch, forms))
-    return len(_NAMES[quantity]) if is_like else None
+    forms = [*filter(None, (*found, *map(_roles, found)))]
+    for rank, pattern in enumerate(_PATTERNS.get(quantity, ()), start=len(_NAMES[quantity])):
+        if any(map(pattern.fullmatch, forms)):
+            return rank
+    return None
 
 
 def is_named(column: str, *quantities: str) -> bool:
@@ -211,6 +222,7 @@ def is_wind(name: str) -> bool:
     return is_named(plain, *WIND)
 
 
+@lru_cache(8192)
 def _roles(name: str) -> str:
     """Return a folded name with a capital letter in place of each word that is known."""
     words = _WORD.sub(lambda word: _ROLES[word[0]], _SPAN.sub('', name))
@@ -271,7 +283,8 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
     """
     Return a name without the words that are a unit, folded, and the unit; both may be empty.
 
-    A unit of one letter, or ``in``, is the last word; the first word is one only of a known name.
+    A unit of one letter, or ``in``, is the last word; the first word is one only before a known
+    name or of one, as in ``mph Gust Speed``.
     """
     if len(name) > _LONGEST_NAME:  # a header without end
         return '', ''
@@ -283,13 +296,12 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
         for begin in range(end - 1, max(end - 4, -1), -1):
             inside = words[begin:end]
             for unit in ('/'.join(inside), ''.join(inside)):
-                is_last = end == len(words) or (len(unit) > 1 and unit != 'in')
-                is_unit = unit_known(kind, unit) and not unit.isdecimal()
-                if is_unit and is_last and (begin or whole in _ALL_NAMES):
+                is_last = end == len(words) or not _LAST.fullmatch(unit)
+                if unit_known(kind, unit) and not unit.isdecimal() and is_last:
                     rest = re.sub(r'\s(in|en)$', '', ' '.join(words[:begin] + words[end:]))
-                    found = found if found[1] else (folded(rest), unit)
                     if _ALL_NAMES & {folded(rest), whole}:
                         return folded(rest), unit  # dd_10_deg is a dd_10 and no dd in 10 deg
+                    found = found if found[1] or not begin else (folded(rest), unit)
     return found
 
 
@@ -297,8 +309,10 @@ def _glued_unit(name: str, known: str, kind: str) -> str:
     """Return the unit of a kind that follows a known name without a sign: ``windspeedmph``."""
     whole = folded(name)
     end = whole.removeprefix(known)
+    if end in ('', whole):
+        return ''
     last = re.split(r'[\s_.]+', name)[-1]
-    if end in ('', whole) or len(end) > len(folded(last)):
+    if len(end) > len(folded(last)):
         return ''  # stem_diam_m is in m, and not a 'stem dia' in mm
     if whole not in _WITH_UNIT and (len(known) < _SHORTEST_GLUED or whole in _ALL_NAMES):
         return ''  # stem_diameter is a name of its own, and not a 'stem dia' in meters

@@ -15,9 +15,10 @@ from pathlib import Path
 
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files.column_names import folded, motion_of
-from tree_sway.files.layouts.known import looks_like_wind, table_of
+from tree_sway.files.layouts.known import looks_like_wind, table_of, ZIP_BEGINS
 from tree_sway.files.text_file import read_head
 from tree_sway.files.yaml_document import begins_with_key
+from tree_sway.files.zipped import table_in
 from tree_sway.tables import table_beside
 
 _ROWS = 60
@@ -55,6 +56,10 @@ def kind_of(path: Path) -> str:
                 return kind
         if head.startswith('time [s],wind_x [m/s],'):
             return 'sway'
+        if head.startswith(ZIP_BEGINS):
+            lines = table_in(path, looks_like_wind)[1]
+            if found := _kind_of_table('\n'.join(lines[:_ROWS])):
+                return found
         if is_stand_table(head, path):
             return 'inventory'
         sure = (each for each in WIND_FORMATS if each.name not in ('toa5', 'sonic', 'csv'))

@@ -27,6 +27,7 @@ _RATE = re.compile(
 )
 """Samples per second, or the seconds of one as in files of LabVIEW."""
 
+_MIDNIGHT = re.compile('[T ]00:')
 _ZONE = re.compile(r'\b((?:Africa|America|Asia|Atlantic|Australia|Europe|Indian|Pacific)/[\w/]+)')
 
 
@@ -100,7 +101,7 @@ def row_times(
     stamps = cells[0]
     if form:  # a date alone may have a midnight behind it
         parts = zip(*cells, strict=True)
-        stamps = [form.format(day.partition('T00:')[0], *others) for day, *others in parts]
+        stamps = [form.format(_MIDNIGHT.split(day)[0], *others) for day, *others in parts]
     times = _of_one_year(times_of(stamps, factor))
     has_unit = form or factor != 1.0
     is_dated = times.epoch is not None

@@ -1,6 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The lines of a table's file, or of the tables in a zip, as phones and services export them."""
+"""
+The lines of a table's file, or of the tables in a zip, as phones and services export them.
+
+A zip is known by its content, as those of loggers have suffixes of their own. Those of the sheets
+of a spreadsheet have tabs between the cells.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +15,15 @@ from zipfile import BadZipFile, is_zipfile, ZipFile
 import zlib
 
 from tree_sway.errors import FormatError
+from tree_sway.files.foreign_file import foreign_file
+from tree_sway.files.spreadsheet import sheets_of
 from tree_sway.files.text_file import decoded, read_bytes, read_lines, reason_of, table_lines
 
 _MOST_FILES = 200
 _HEAD = 200
 _MOST_BYTES = 64 << 20
 """Largest size of all tables of a zip that are unpacked [bytes]."""
-_SUFFIXES = ('.csv', '.txt', '.tsv', '.dat', '.json')
+_SUFFIXES = ('.csv', '.txt', '.tsv', '.dat', '.data', '.log', '.tab', '.json')
 
 
 def table_in(path: Path, is_wanted: Callable[[str], bool]) -> tuple[str, list[str]]:
@@ -28,14 +35,19 @@ def table_in(path: Path, is_wanted: Callable[[str], bool]) -> tuple[str, list[st
 
 def tables_in(path: Path) -> Iterator[tuple[str, list[str]]]:
     """
-    Yield the name and the lines of a file, or of each table in a zip.
+    Yield the name and the lines of a file, or of each table in a zip or sheet of a spreadsheet.
 
     Raises a `FormatError` for a broken zip, one without a table, or one that is too large.
     """
-    if path.suffix.lower() != '.zip' or not read_bytes(path, 4) or not is_zipfile(path):
+    if path.suffix.lower() in ('.xlsx', '.xlsm'):
+        for number, rows in enumerate(sheets_of(path), start=1):
+            lines = ('\t'.join(map(' '.join, map(str.split, row))) for row in rows)
+            yield f'{path}/sheet {number}', [line.replace('"', ' ') for line in lines]
+        return
+    if not read_bytes(path, 4) or not is_zipfile(path):
         yield str(path), read_lines(path)
         return
-    cure = 'unpack it first'
+    cure = foreign_file(path)[1] or 'unpack it first'
     try:
         with ZipFile(path) as archive:
             files = [each for each in archive.infolist() if not each.is_dir()]

@@ -181,7 +181,7 @@ def _said_units(node: Record) -> Cells:
     """System of units of weather.com's history and Dark Sky, or titles of columns behind #."""
     system = object_of(node.get('metadata', node.get('flags'))).get('units')
     channel = object_of(node.get('channel'))  # ThingSpeak's names of its fields
-    titles = {f'#{name}': title for name, title in channel.items() if isinstance(title, str)}
+    titles = {f'#{name}': channel[name] for name in channel if name.startswith('field')}
     return {'*': system} if isinstance(system, str) else titles
 
 

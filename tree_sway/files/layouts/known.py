@@ -9,7 +9,6 @@ from pathlib import Path
 
 from tree_sway.errors import FormatError, inside
 from tree_sway.files.foreign_file import foreign_file
-from tree_sway.files.layouts.badc_csv import BADC_CSV
 from tree_sway.files.layouts.csiro import CSIRO
 from tree_sway.files.layouts.jma import JMA
 from tree_sway.files.layouts.json_tables import JSON
@@ -22,12 +21,13 @@ from tree_sway.files.layouts.weatherlink_text import WEATHERLINK_TEXT
 from tree_sway.files.table_file import TextTable
 
 _LAYOUTS = (
-    *(JSON, WEATHERLINK_TEXT, BADC_CSV, CSIRO, JMA, MONITOR),
+    *(JSON, WEATHERLINK_TEXT, CSIRO, JMA, MONITOR),
     *LINES,
     PLAIN,
 )
 
 _HEAD = 200
+ZIP_BEGINS = 'PK\3\4'
 
 
 def _layout_of(lines: Sequence[str]) -> Layout | None:
@@ -47,9 +47,9 @@ def table_of(lines: list[str], source: str) -> TextTable:
 
 
 def looks_like_wind(head: str) -> bool:
-    """Whether the beginning of a file is that of a table of wind."""
+    """Whether the beginning of a file is that of a table of wind, or of a zip."""
     lines = head.replace('\r\n', '\n').replace('\r', '\n').split('\n')
     found = _layout_of(lines[:_HEAD])
     if found is JSON:
         return any(word in head.lower() for word in ('wind', '"wd', '_wd', '"obs'))
-    return found is not None
+    return found is not None or head.startswith(ZIP_BEGINS)

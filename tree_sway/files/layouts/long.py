@@ -6,23 +6,30 @@ Long tables: a row per value, with the name of its quantity in a cell.
 InfluxDB's annotated CSV has ``_time``, ``_value`` and ``_field`` below lines with a hash (docs of
 InfluxDB, Annotated CSV); Home Assistant's history has ``entity_id,state,last_changed``; those of
 wetterdienst, openSenseMap and DMI have the instrument of each value too. The column of the names
-is that whose cells are most quantities of the wind. Each value holds until
-the next of its name, as Home Assistant stores changes alone.
+is that whose cells are most quantities of the wind; units are in a column called so, else in any,
+as in the ``_measurement`` of Home Assistant in InfluxDB. Each value holds until the next of its
+name, as Home Assistant stores changes alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
+from math import inf
+from statistics import median
 from typing import Any
 
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import folded, is_named, is_wind, STATION, WIND
+from tree_sway.files.column_names import folded, is_named, is_wind, STATION, unit_known, WIND
 from tree_sway.files.json_values import text_of
 from tree_sway.files.row_times import time_columns
 from tree_sway.files.table_file import TextTable
+from tree_sway.files.time_stamps import times_of
 
 _LOOKED_AT = 200
+_TOGETHER = 0.1
+"""Largest time between the values of a sample, in times between samples."""
 _NO_STATE = ('unavailable', 'unknown', '')
 Value = tuple[int, str, str, str]
 """Line, time, name and value."""
@@ -34,6 +41,7 @@ def wide_table(
     """
     Return a row for each time, in the column ``clock``, with the newest value of each name.
 
+    Values of several names that are much less than a sample apart are of one time, the last.
     ``unit_of`` are the units of some names. Of several values of a name at a time the last is
     taken, and said.
     """
@@ -50,16 +58,27 @@ def wide_table(
         newest[name] = ''
     names = list(newest)
     rows = []
-    for time in sorted(by_time):
-        newest |= by_time[time]
+    times = sorted(by_time)
+    samples = [by_time[time] for time in times]
+    for time, sample in zip(times, samples, strict=True):
+        newest |= sample
         rows.append([time, *newest.values()])
     # sensor.garden_wind_speed is wind_speed, if no other sensor is called so.
     short = [STATION.sub('', name, count=1) for name in names]
     columns = short if len({*short}) == len(short) else names
-    numbers = [lines[time] for time in sorted(by_time)]
+    numbers = [lines[time] for time in times]
     units = [(unit_of or {}).get(name, '') for name in names]
     table = table_of_cells([clock, *columns], rows, source, numbers, ['', *units])
-    return replace(table, note=note_of_several(several))
+    timed = [*zip(times_of(times).seconds.tolist(), samples, strict=True)]
+    own = ([second for second, sample in timed if name in sample] for name in names)
+    steps = [then - now for seconds in own for now, then in pairwise(seconds)]
+    apart = _TOGETHER * median(steps or [0.0])
+    whole = [
+        row
+        for row, ((now, sample), (then, later)) in enumerate(pairwise([*timed, (inf, {})]))
+        if not then - now < apart or sample.keys() & later.keys()
+    ]
+    return replace(table.part(whole), note=note_of_several(several))
 
 
 def note_of_several(times: Mapping[str, str]) -> str:
@@ -101,7 +120,10 @@ def _values(
 ) -> Iterator[Value]:
     """Yield the values of a long table, whose times have a form, and note their units."""
     names = table.columns
-    units_at = [i for i, name in enumerate(names) if folded(name).startswith('unit')]
+    others = [i for i in range(len(names)) if i not in wanted]
+    units_at = [i for i in others if folded(names[i]).startswith('unit')] or [
+        i for i in others if any(unit_known('speed', cell) for cell in table.rows_by(i))
+    ]
     for line, text in zip(table.numbers, table.texts, strict=True):
         cells = table.split(text)
         # There is a header above each of several tables.
@@ -109,6 +131,6 @@ def _values(
             continue
         *clock, name, value = (cells[each] for each in wanted)
         time = form.format(*clock)
-        if value not in _NO_STATE:
+        if value not in _NO_STATE and is_wind(name):
             units.setdefault(name, cells[units_at[0]] if units_at else '')
             yield line, time, name, value

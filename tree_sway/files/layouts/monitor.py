@@ -18,8 +18,11 @@ from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.table_file import SEPARATORS, TextTable
 
 _CLOCK = 'monitor_time'
-_LINE = re.compile(r'(?:(\d\d:\d\d:\d\d(?:\.\d+)?) -> ?)?(.*)')
-"""Clock, if there is one, and text of a line."""
+_LINE = re.compile(
+    r'(?:(\d\d:\d\d:\d\d(?:\.\d+)?(?= ->)|\d{4}-\d\d-\d\d[T ][\d:.]+Z?(?=[, ]+\w+[:=] ?[-\d.]))'
+    r'(?: -> ?|[, ]+))?(.*)'
+)
+"""Clock, or a date before pairs, if there is one, and text of a line."""
 _PAIR = re.compile(
     r'(?<!\w)([A-Za-z][\w ]{0,60}?)\s{0,9}[:=]\s{0,9}'
     r'([-+]?[\d.]{1,40}(?:[eE][-+]?\d{1,3})?|[NESW]{1,3}\b)'

@@ -31,11 +31,16 @@ _HEAD_ENDS = '***End_of_Header***'
 _MOST_COLUMNS = 200
 _MOST_BELOW = 3
 _NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
+_REMARK = re.compile(r'(?:[^\W\d]|[ .:])*[,;\t]*')
+"""One cell of words in a last line."""
 _BETWEEN = re.compile(r'[,;:=\t|()\[\]]|\bin\b')
 """What is between a name, what it means and its unit."""
+_COMMENTED = re.compile(r'#|%|//|;[^;]*$|[\w\s]*\w{3}\.\s*$')
+_PLACE = re.compile(r'(?:(?!wind).)*?(?=wind)|(?:.*[ _])?', re.IGNORECASE)
 _DIGIT = re.compile(r'[-+]?\.?\d')
 _COMMENT = re.compile(r'(?:[#%/ ]+|;) *(?:[Hh]eaders\s*,)? *')
 _PARTS = ('yyyymmdd', 'yyyy', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
+_ABOUT_UNIT = re.compile('unit|unidad|einheit|eenheid', re.IGNORECASE)
 _KINDS = ('speed', 'acceleration', 'rate')
 """Kinds of units of which a row of units has at least one."""
 _SIZES = ('height', 'diameter', 'girth')
@@ -66,8 +71,8 @@ def header_line(lines: Sequence[str]) -> int | None:
 
 
 def _is_comment(line: str) -> bool:
-    """Whether a line is a comment; a semicolon before the others is an empty cell."""
-    return line.startswith(('#', '%', '//')) or (line.startswith(';') and line.count(';') == 1)
+    """Whether a line is a comment or prose; a semicolon before the others is an empty cell."""
+    return _COMMENTED.match(line) is not None
 
 
 def _uncommented(line: str) -> str:
@@ -95,6 +100,8 @@ def _is_table(lines: Sequence[str]) -> bool:
 
 
 def _read(lines: list[str], source: str) -> TextTable:
+    while len(lines) > 1 and _REMARK.fullmatch(lines[-1]):
+        lines.pop()
     lines = lines or ['']
     first = header_line(lines) or 0
     above = tuple(lines[:first])
@@ -115,9 +122,10 @@ def _read(lines: list[str], source: str) -> TextTable:
 def _without_place(names: Sequence[str]) -> Sequence[str]:
     """Return names without the place that all unknown ones begin with: ``Basel Wind Speed``."""
     unknown = [name for name in names if not is_known(name)]
-    words = zip(*map(str.split, unknown), strict=False) if len(unknown) > 1 else ()
-    place = ' '.join(each[0] for each in takewhile(lambda each: len({*each}) == 1, words))
-    short = [name.removeprefix(place).strip() for name in names]
+    letters = zip(*unknown, strict=False) if len(unknown) > 1 else ()
+    alike = ''.join(each[0] for each in takewhile(lambda each: len({*each}) == 1, letters))
+    place = next(_PLACE.finditer(alike))[0]
+    short = [name.removeprefix(place) for name in names]
     return short if any(map(is_known, {*short} - {*names})) else names
 
 
@@ -137,7 +145,8 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
         words.append([_unit_below(cell) for cell in cells])
     split = map(table.split, table.above)
     size = len(table.columns)
-    told = (row for row in split if size - 2 < len(row) <= size and not {*row} & {*table.columns})
+    alike = (row for row in split if max(size - 2, 2) < len(row) <= size)
+    told = (row for row in alike if not {*row} & {*table.columns})
     above = [[*map(_unit_below, row)] for row in told]
     is_campbell = any(line.startswith(_CAMPBELL) for line in table.above)
     rows = [row for row in (*words, *above) if is_campbell or _are_units(table, row)]
@@ -156,16 +165,23 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
 
 
 def units_above(table: TextTable, above: Sequence[str]) -> tuple[str, ...]:
-    """Return units of columns that lines tell, as ``# WSPD: wind speed (knots)``; may be empty."""
+    """
+    Return units of columns that lines tell, as ``# WSPD: wind speed (knots)``; may be empty.
+
+    A speed that no line names has the unit which all lines about a unit tell, as ``Units,mph``.
+    """
     said = [
         [part.strip('#%/" ') for part in (*_BETWEEN.split(line), *line.split())] for line in above
     ]
+    settings = [part for line in said if _ABOUT_UNIT.search(line[0]) for part in line[1:]]
+    speeds = {part for part in settings if unit_known('speed', part)}
+    of_all = speeds.pop() if len(speeds) == 1 else ''
 
     def unit_of(column: str) -> str:
         kinds = [COLUMNS[each]['unit'] for each in HEADER if is_named(column, each)]
         parts = (part for line in said if column in line for part in line if part != column)
         known = (part for part in parts if any(unit_known(kind, part) for kind in kinds))
-        return next(known, '')
+        return next(known, of_all if is_named(column, 'wind_speed', 'gust') else '')
 
     return tuple(map(unit_of, table.columns))
 

@@ -11,35 +11,25 @@ import re
 from tree_sway.files.column_names import unit_known
 from tree_sway.files.table_file import TextTable
 
-_CELL = re.compile(r'\s*(-?\d+(?:[.,]\d+)?)\s*([a-zA-Z][a-zA-Z/]*)\s*')
+_UNIT = re.compile(r'(?<=\d)\s*([a-zA-Z][a-zA-Z/]*)\s*$')
 _LOOKED_AT = 50
 
 
 def with_units_in_head(table: TextTable) -> TextTable:
     """Return a table whose cells of speed and gust are numbers alone; itself if they are."""
-    units: dict[int, str] = {}
-    for quantity in ('wind_speed', 'gust'):
-        for index in table.find_all(quantity)[:1]:
-            cells = table.cells(index, table.rows[:_LOOKED_AT])
-            found = {_unit_of(cell) for cell in cells if cell.strip()}
-            if len(found) == 1 and found != {''}:
-                units[index] = found.pop()
-    if not units:
+    names = list(table.columns)
+    places = [index for each in ('wind_speed', 'gust') for index in table.find_all(each)[:1]]
+    for index in places:
+        cells = filter(None, table.cells(index, table.rows[:_LOOKED_AT]))
+        units = {unit for cell in cells for unit in _UNIT.findall(cell) or ['']}
+        if len(units) == 1 and unit_known('speed', *units):
+            names[index] += f' [{units.pop()}]'
+    changed = [index for index in places if names[index] != table.columns[index]]
+    if not changed:
         return table
 
     def split(line: str) -> Sequence[str]:
-        return [
-            number[1] if i in units and (number := _CELL.fullmatch(cell)) else cell
-            for i, cell in enumerate(table.split(line))
-        ]
+        cells = table.split(line)
+        return [_UNIT.sub('', cell) if i in changed else cell for i, cell in enumerate(cells)]
 
-    names = tuple(
-        f'{name} [{units[i]}]' if i in units else name for i, name in enumerate(table.columns)
-    )
-    return replace(table, columns=names, split=split)
-
-
-def _unit_of(cell: str) -> str:
-    """Return the unit of speed of a cell; empty without one."""
-    found = _CELL.fullmatch(cell)
-    return found[2] if found and unit_known('speed', found[2]) else ''
+    return replace(table, columns=tuple(names), split=split)

@@ -17,6 +17,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 import re
 
@@ -25,11 +26,12 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
-from tree_sway.files.column_names import folded, is_named, rank_of
+from tree_sway.files.column_names import FILES_OF, folded, is_named, rank_of
 from tree_sway.files.layouts.known import looks_like_wind, table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import Column, TextTable
+from tree_sway.files.text_file import finite
 from tree_sway.files.wind.cell_units import with_units_in_head
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.row_winds import winds_of_components, winds_of_directions
@@ -124,6 +126,13 @@ def read_table_wind(
 
 def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
     """Return a table with the columns of the lowest height of each wind alone, and which it is."""
+    for index in table.find_all('height')[:1]:
+        rows = table.rows_by(index)
+        sizes = {*map(len, rows.values())}
+        if len(rows) > 1 and len(sizes) == 1 and sizes != {1}:
+            least = min(rows, key=lambda height: finite(height) or inf)
+            note = f'the wind at {least} of the heights {", ".join(rows)[:80]}'
+            return table.part(rows[least]), note
     heights = list[tuple[str, int, float]]()
     lowest: dict[str, float] = {}
     names = list(table.columns)
@@ -139,7 +148,7 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
         return table, ''
     for quantity, index, height in heights:
         names[index] = names[index] if height == lowest[quantity] else ''
-    known = {height for _, _, height in heights}
+    known = {height for quantity, _, height in heights if quantity != 'wind_direction'}
     first = lowest.get('wind_speed', next(iter(lowest.values())))
     others = sorted(known - {first})
     more = f'; there is one at {", ".join(f"{each:g}" for each in others)} m' if others else ''
@@ -180,7 +189,9 @@ def _components(table: TextTable, names: tuple[str, ...] | None) -> list[int]:
     if found[0] is None or found[1] is None:
         return []
     is_place = folded(table.columns[found[0].index]) in _PLACES
-    if is_place and table.find('wind_speed') and table.find('wind_direction'):
+    is_wind = table.find('wind_speed') and table.find('wind_direction')
+    stem = folded(Path(table.source).stem)  # as Accelerometer.csv of a phone
+    if is_place and (is_wind or any(words.search(stem) for words in FILES_OF.values())):
         return []
     return [column.index for column in found if column is not None]
 
@@ -205,7 +216,8 @@ def _doubt(table: TextTable, direction: Column | float) -> str:
         return ''
     values = table.values([direction.index])
     known = np.abs(values[np.isfinite(values)])
-    if (known > _CIRCLE).any() or not (known % 1.0).any():
+    is_told = maker_of(table).get('direction')
+    if is_told or (known > _CIRCLE).any() or not (known % 1.0).any():
         return ''
     name = table.columns[direction.index]
     return f'no {name} is above 6.3: taken in degrees; call it {name} [rad] if it is'

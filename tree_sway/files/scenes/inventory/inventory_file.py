@@ -15,7 +15,7 @@ from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.paths import of_file
 from tree_sway.files.scenes.inventory.geojson import looks_like_geojson, read_geojson
 from tree_sway.files.scenes.inventory.geopackage import is_geopackage, read_geopackage
-from tree_sway.files.scenes.inventory.spreadsheet import read_spreadsheet
+from tree_sway.files.spreadsheet import read_spreadsheet
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.zipped import table_in
 

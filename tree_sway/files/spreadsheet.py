@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Spreadsheets (.xlsx) as tables: the first sheet with a header of an inventory."""
+"""Spreadsheets (.xlsx): the rows of their sheets, and the one with an inventory."""
 
 from __future__ import annotations
 
@@ -34,12 +34,9 @@ def read_spreadsheet(path: Path) -> TextTable:
     Raises a `FormatError` for a broken file or no such sheet, and a `MissingDependencyError`
     without openpyxl.
     """
-    cure = 'save it as .xlsx or .csv again'
-    arrays = bounded_arrays(_rows_of_spreadsheet, path, kind='a spreadsheet', cure=cure)
-    sheets = [list(unpacked_rows(each)) for each in arrays.values()]
     tables = [
         (rows, number)
-        for rows in sheets
+        for rows in sheets_of(path)
         for number, cells in enumerate(rows[:_HEADER])
         if sum(map(bool, cells)) >= 2 and number + 1 < len(rows)
     ]
@@ -49,6 +46,13 @@ def read_spreadsheet(path: Path) -> TextTable:
     rows, number = max(tables, key=lambda table: sum(map(is_known, table[0][table[1]])))
     below = {n: row for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)}
     return table_of_cells(rows[number], below.values(), str(path), [*below])
+
+
+def sheets_of(path: Path) -> list[list[list[str]]]:
+    """Return the cells of each row of each sheet; errors are as of `read_spreadsheet`."""
+    cure = 'save it as .xlsx or .csv again'
+    arrays = bounded_arrays(_rows_of_spreadsheet, path, kind='a spreadsheet', cure=cure)
+    return [list(unpacked_rows(each)) for each in arrays.values()]
 
 
 def _rows_of_spreadsheet(path: str) -> Arrays:
