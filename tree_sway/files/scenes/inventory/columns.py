@@ -119,7 +119,7 @@ class InventoryColumns:
         for row, text in enumerate(self.texts(index)):
             found = stems_number(text) if stems else cell_number(text)
             if found is None:
-                if stems and any(map(str.isdigit, text)):
+                if stems and self.is_kept[row] and any(map(str.isdigit, text)):
                     unread.append(row)
                 continue
             values[row], units[row] = found

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from functools import cache
 import math
+import re
 
 import numpy as np
 
@@ -35,6 +36,7 @@ _MIDDLING_STEM = 0.25
 """Diameter of a middling stem [m]."""
 _HIGHEST_MIDDLE = 60.0
 """Median height that no inventory exceeds [m]."""
+_RANGE = re.compile('[-–]')
 _INCH = 0.0254
 _FOOT = 0.3048
 _CM = 0.01
@@ -189,18 +191,33 @@ def heights_of(columns: InventoryColumns, diameter: Floats) -> Floats:
     return height
 
 
+def refuse_list_of_species(columns: InventoryColumns, diameter: Floats) -> None:
+    """Raise a `FormatError` for heights that are all ranges, without a stem or name of a tree."""
+    cells = [cell for cell in columns.texts_of('height') if any(map(str.isdigit, cell))]
+    has_trees = np.isfinite(diameter).any() or columns.index_of('tree_name') is not None
+    if cells and not has_trees and all(map(_RANGE.search, cells)):
+        raise columns.table.error(
+            f"a list of species and no inventory: heights are ranges, as '{cells[0][:40]}', and "
+            'there is no stem, place or name of a tree',
+            cure='give a row for each tree, with its own height or stem',
+        )
+
+
+def leave_out_without_size(columns: InventoryColumns, height: Floats, diameter: Floats) -> None:
+    """Leave out the rows without a height and without a stem."""
+    for row in np.flatnonzero(np.isnan(height) & np.isnan(diameter)).tolist():
+        columns.leave_out(row, 'no height and no stem', _why_no_size(columns, row))
+
+
 def fill_heights(
     columns: InventoryColumns, height: Floats, diameter: Floats, keys: list[str]
 ) -> list[bool]:
     """
     Give each kept row without a height that of a grown tree of its stem, in place.
 
-    Returns whether a row's height is such. Rows without a stem as well are left out.
+    Returns whether a row's height is such.
     """
-    missing = np.isnan(height) & columns.is_kept
-    is_found = missing & np.isfinite(diameter)
-    for row in np.flatnonzero(missing & ~is_found).tolist():
-        columns.leave_out(row, 'no height and no stem', _why_no_size(columns, row))
+    is_found = np.isnan(height) & columns.is_kept
     grown = cache(height_of_stem)
     rows = np.flatnonzero(is_found).tolist()
     for row in rows:

@@ -9,9 +9,12 @@ from collections.abc import Mapping
 from functools import cache, partial
 import re
 
+import numpy as np
+
 from tree_sway.core.species import Species, species_like, species_named
 from tree_sway.errors import SpeciesError
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
+from tree_sway.files.scenes.inventory.no_trees import said_of_none, UNKNOWN
 from tree_sway.files.scenes.inventory.species_codes import (
     has_codes,
     latin_name,
@@ -28,8 +31,6 @@ _UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
 _GENERAL = ('broadleaf', 'conifer')
 """Trees of no known species."""
-_NO_EPITHETS = 'sp sp. spp spp. species'.split()
-"""Cells that say that the epithet is not known, and would else be read as abbreviations."""
 _MOST_NOTES = 20
 _SHORTEST_NAME = 3
 _TRIED = 50
@@ -56,7 +57,7 @@ def species_of_rows(
     chosen = cache(partial(_chosen, given=given))
     names = [*map(chosen, zip(*(tables or [[''] * columns.n_rows]), strict=True))]
     known: dict[str, Species] = {}
-    counts = Counter(names)
+    counts = Counter(names[row] for row in np.flatnonzero(columns.is_kept))
     notes = []
     for name, count in counts.most_common():
         if name in given:
@@ -127,8 +128,8 @@ def _chosen(cells: tuple[str, ...], given: Mapping[str, object]) -> str:
     """First name of a species, else of a broadleaf or conifer, else the first that is there."""
     # A cell may have several names of one species, as a common and a Latin one.
     parts = [part.strip() for cell in cells for part in re.split(r'::|\|', cell) if part.strip()]
-    parts = [part for part in parts if part.lower() not in _NO_EPITHETS]
     for name in parts:
         if name in given:
             return name
+    parts = [part for part in parts if said_of_none(part) != UNKNOWN]
     return max(parts, default='', key=_specificity)  # the first of those that say most
