@@ -37,6 +37,8 @@ Pages of two bytes a letter, and the bytes of their usual letters.
 These are kana and the kanji of the first level, Hangul, and the ideographs of the first level.
 Text of another page has few of them, and in code page 1252 they are rows of signs.
 """
+_CENTRAL = re.compile(r'[a-z][³¹¿][a-z]|\A(?!.*[æå])(?=.*ø).*[ìšžïý]', re.DOTALL)
+"""Letters of Poland and Czechia, of code page 1250, as 1252 has them; Nordic ones beside ø."""
 _USUAL = 0.9
 """Share of the letters of a text that are usual ones in its page."""
 _SAMPLE = 1 << 14
@@ -84,7 +86,7 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
     Return bytes as text: UTF-16 or UTF-32, UTF-8, else a code page of Windows.
 
     That is the first of `_PAGES` in which nearly all letters are usual ones and two are side by
-    side, else 1252; a spreadsheet writes CSV in these.
+    side, else 1250 or 1252; a spreadsheet writes CSV in these.
     ``errors`` is for bytes that are none of them.
     """
     for encoding, marks in _MARKS.items():
@@ -107,7 +109,8 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
         with suppress(UnicodeDecodeError):
             if _is_of_page(data[begin : begin + _SAMPLE], page, usual):
                 return data.decode(page, errors)
-    return data.decode('cp1252', errors)
+    western = data[begin : begin + _SAMPLE].decode('cp1252', 'replace')
+    return data.decode('cp1250' if _CENTRAL.search(western) else 'cp1252', errors)
 
 
 def _is_of_page(data: bytes, page: str, usual: bytes) -> bool:

@@ -160,3 +160,55 @@ def test_names_of_pages_of_two_bytes_are_read(tmp_path: Path, name: str, page: s
 )
 def test_western_text_is_of_no_page_of_two_bytes(text: str) -> None:
     assert decoded(text.encode('cp1252')) == text
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        'pařez;zdravotní stav;odumřelý',
+        'wysokość;klon pospolity;dąb szypułkowy',
+        'výška;šířka;buk lesní',
+    ],
+)
+def test_czech_and_polish_text_is_of_page_1250(text: str) -> None:
+    assert decoded(text.encode('cp1250')) == text
+
+
+@pytest.mark.parametrize('text', ['Højde;Træart;Bøgh Šimon', 'cœur, più, lì', 'm³/s;¿Qué?;año'])
+def test_other_text_is_of_page_1252(text: str) -> None:
+    assert decoded(text.encode('cp1252')) == text
+
+
+@pytest.mark.parametrize(
+    ('column', 'living', 'gone'),
+    [
+        ('HISTORY', '1', '6'),
+        ('RETIREDDT', '', '2021/03/04'),
+        ('ASSET_SUBTYPE', 'TREE', 'STUMP'),
+        ('plantStatus', 'Live, broken bole', 'Dead, broken bole'),
+        ('TreeStatus', 'živý', 'suchý'),
+    ],
+)
+def test_columns_of_states_tell_what_is_gone(
+    tmp_path: Path, column: str, living: str, gone: str
+) -> None:
+    head = f'id,species,dbh,height,x,y,{column}\n'
+    rows = f'1,oak,30,12,1.5,2.5,"{living}"\n2,oak,30,12,8.5,2.5,"{gone}"\n'
+    assert read(tmp_path, head + rows).names == ('1',)
+
+
+def test_a_genus_in_its_own_column_does_not_hide_the_species(tmp_path: Path) -> None:
+    inventory = read(
+        tmp_path,
+        'SCI_NM,CMMN_NM,GENUS_NAME,DBH,X,Y\nAcer rubrum,Red maple,Acer,9,1.5,2.5\n'
+        ',,Quercus,12,8.5,2.5\n',
+    )
+    assert inventory.species == ('Acer rubrum', 'Quercus')
+
+
+def test_stems_in_millimetres_are_told_by_heights(tmp_path: Path) -> None:
+    inventory = read(
+        tmp_path, 'Tag,Species,D1,Height,X,Y\n1,Fagus,318,28,2.5,3.5\n2,Fagus,118,15,7.5,3.9\n'
+    )
+    assert inventory.diameter == pytest.approx([0.318, 0.118])
+    assert 'D1 is taken as mm, by height over it' in inventory.notes

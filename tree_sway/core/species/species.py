@@ -161,8 +161,9 @@ def _has_noun(words: list[str]) -> bool:
     return len(words) == 2 and words[0] not in _GENERA and words[1] in _KEYS
 
 
-_LIKE = {True: 0.65, False: 0.8}
-"""Least share of common letters of a guess, by whether a name is as short as ``brch``."""
+_LIKE = {1: 1.0, 2: 1.0, 3: 0.65, 4: 0.65}
+"""Least share of common letters of a guess for a short name; two letters are a code."""
+_LIKE_LONG = 0.8
 
 
 def species_like(name: str) -> tuple[Species, str]:
@@ -193,7 +194,7 @@ def species_like(name: str) -> tuple[Species, str]:
             return group, f"'{name[:40]}' is taken as {group.title}"
     group = SPECIES['conifer' if _CONIFEROUS.search(plain) else 'broadleaf']
     note = f"'{name[:40]}' is not in the table: taken as {group.title}"
-    guess = nearest(plain, _SUGGESTED, _LIKE[len(plain) <= _SHORTEST_END])
+    guess = nearest(plain, _SUGGESTED, _LIKE.get(len(plain), _LIKE_LONG))
     return group, '; '.join(filter(None, (note, guess)))
 
 

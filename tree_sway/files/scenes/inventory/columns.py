@@ -117,9 +117,11 @@ class InventoryColumns:
         n_several = 0
         unread = list[int]()
         for row, text in enumerate(self.texts(index)):
+            if not self.is_kept[row]:
+                continue
             found = stems_number(text) if stems else cell_number(text)
             if found is None:
-                if stems and self.is_kept[row] and any(map(str.isdigit, text)):
+                if stems and any(map(str.isdigit, text)):
                     unread.append(row)
                 continue
             values[row], units[row] = found

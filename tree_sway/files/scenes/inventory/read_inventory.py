@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import re
@@ -14,10 +15,15 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.species import Species
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import folded, INVENTORY
+from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES
-from tree_sway.files.scenes.inventory.no_trees import GROUP, said_of_none, UNKNOWN
+from tree_sway.files.scenes.inventory.no_trees import (
+    gone_by_codes,
+    GROUP,
+    said_of_none,
+    UNKNOWN,
+)
 from tree_sway.files.scenes.inventory.places import about_centre, places_of
 from tree_sway.files.scenes.inventory.sizes import (
     diameters_of,
@@ -31,20 +37,6 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.simulation import EXPOSURES
 
 T = TypeVar('T')
-_SAYS_DEAD = {
-    'alive': re.compile('^(false|no|non|0|dead)$', re.IGNORECASE),
-    'dead': re.compile('^(true|yes|oui|si|1|dead)$', re.IGNORECASE),
-}
-"""Cells of a column of living or of dead trees that say that one is dead."""
-_CODES = (
-    ('status', 'A AB AS D G M P L', 'A L', 'D'),
-    ('statuscd', '0 1 2 3', '1', '2 3'),
-)
-"""
-Columns of codes: all of them, those of living trees, and of trees that are dead or gone.
-
-ForestGEO (forestgeo/fgeo.validate), with the L of plots that have L and D; FIA (user guide).
-"""
 _OF_SCHEDULE = re.compile(r'([A-Z]) ?\d+[a-z]?')
 _KINDS_OF_SCHEDULE = set('TGHWAS')
 """Trees, groups, hedges, woodlands, areas and shrubs, as BS 5837 and orders of councils count."""
@@ -195,15 +187,14 @@ def _lacking(table: TextTable, missing: Sequence[str]) -> FormatError:
 
 def _leave_out_no_trees(columns: InventoryColumns) -> None:
     """Leave out the rows of dead trees, stumps, empty places, groups, and of no tree at all."""
-    for quantity in ('status', 'species', 'genus', *_SAYS_DEAD):
+    for quantity in ('status', 'species', 'genus', 'alive', 'dead'):
         for index in columns.table.find_all(quantity):
             texts = columns.texts(index)
-            gone = _codes_of_gone(folded(columns.table.columns[index]), {*texts})
+            gone = gone_by_codes(columns.table.columns[index], quantity, {*texts})
+            none = {'', UNKNOWN, GROUP if quantity == 'status' else ''}
             for row, text in enumerate(texts):
-                why = '' if quantity in _SAYS_DEAD else said_of_none(text)
-                if text in gone or (quantity in _SAYS_DEAD and _SAYS_DEAD[quantity].search(text)):
-                    why = 'dead or gone'
-                if why not in ('', UNKNOWN) and (why != GROUP or quantity != 'status'):
+                why = 'dead or gone' if text in gone else said_of_none(text)
+                if why not in none:
                     columns.leave_out(row, why, columns.told(index, row))
     for index in columns.table.find_all('tree_name')[:1]:
         kinds = [_OF_SCHEDULE.fullmatch(text) for text in columns.texts(index)]
@@ -226,14 +217,6 @@ def _count_trees(columns: InventoryColumns, index: int) -> None:
             f'rows for several trees by {columns.table.columns[index]}: {len(rows)}, '
             f'{columns.line(rows[0])} for {count[rows[0]]:.0f}; each is taken as one tree'
         )
-
-
-def _codes_of_gone(column: str, texts: set[str]) -> list[str]:
-    """Codes of dead trees in a column whose cells are codes, some of them of living trees."""
-    for name, known, alive, gone in _CODES:
-        if name == column and texts <= {'', *known.split()} and texts & {*alive.split()}:
-            return gone.split()
-    return []
 
 
 def _double(columns: InventoryColumns, kept: list[int], cells: Sequence[Any]) -> str:
@@ -283,24 +266,22 @@ def _why_no_place(columns: InventoryColumns, row: int) -> str:
 
 def _names(columns: InventoryColumns, kept: list[int]) -> list[str]:
     """Names of trees, each once: a further one of a name gets its number."""
-    found = columns.table.find_all('tree_name')
     # Of several the first that tells the trees apart: numbers may begin anew in each street.
-    cells = [columns.table.cells(index, kept) for index in found]
-    shares = [round(len({*each}) / len(kept), 1) for each in cells]
-    index = found[shares.index(max(shares))] if found else None
+    index = max(
+        columns.table.find_all('tree_name'),
+        key=lambda each: round(len({*columns.table.cells(each, kept)}) / len(kept), 1),
+        default=None,
+    )
     texts = [''] * columns.n_rows if index is None else columns.texts(index)
-    names = list[str]()
+    names = Counter[str]()
     n_changed = 0
-    counts: dict[str, int] = {}
     for row in kept:
-        name = texts[row].replace('/', '-') or f'tree{row + 1}'
-        count = counts[name] = counts.get(name, 0) + 1
-        n_changed += count > 1 or name != (texts[row] or name)
-        while count > 1 and f'{name}-{count}' in counts:
-            count += 1
-        whole = name if count == 1 else f'{name}-{count}'
-        counts.setdefault(whole, 1)
-        names.append(whole)
+        name = whole = texts[row].replace('/', '-') or f'tree{row + 1}'
+        while whole in names:
+            names[name] += 1
+            whole = f'{name}-{names[name]}'
+        names[whole] = 1
+        n_changed += whole != (texts[row] or name)
     if n_changed:
         columns.note(f'{n_changed} names are changed, as they occur twice or have a slash')
-    return names
+    return [*names]

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from functools import cache
 import math
-import re
 
 import numpy as np
 
@@ -36,7 +35,6 @@ _MIDDLING_STEM = 0.25
 """Diameter of a middling stem [m]."""
 _HIGHEST_MIDDLE = 60.0
 """Median height that no inventory exceeds [m]."""
-_RANGE = re.compile('[-–]')
 _INCH = 0.0254
 _FOOT = 0.3048
 _CM = 0.01
@@ -105,6 +103,8 @@ def _stem_unit(values: Floats, columns: InventoryColumns) -> tuple[float, str]:
     if factor == _FOOT:
         return _INCH, ', as heights are in feet'
     ratio = _slenderness(height * (factor or 1.0), values * _CM)
+    if ratio * _CM / _MM > _SLENDER[0] > ratio > 0.0:
+        return _MM, ', by height over it'
     in_inches = ratio * _CM / _INCH
     if ratio > _SLENDER[1] and _SLENDER[0] < in_inches < _SLENDER[1]:
         return _INCH, ', by height over it'
@@ -194,8 +194,8 @@ def heights_of(columns: InventoryColumns, diameter: Floats) -> Floats:
 def refuse_list_of_species(columns: InventoryColumns, diameter: Floats) -> None:
     """Raise a `FormatError` for heights that are all ranges, without a stem or name of a tree."""
     cells = [cell for cell in columns.texts_of('height') if any(map(str.isdigit, cell))]
-    has_trees = np.isfinite(diameter).any() or columns.index_of('tree_name') is not None
-    if cells and not has_trees and all(map(_RANGE.search, cells)):
+    has_trees = np.isfinite(diameter).any() or columns.table.find_all('tree_name')
+    if cells and not has_trees and all('-' in cell or '–' in cell for cell in cells):
         raise columns.table.error(
             f"a list of species and no inventory: heights are ranges, as '{cells[0][:40]}', and "
             'there is no stem, place or name of a tree',

@@ -44,13 +44,15 @@ def species_of_rows(
     Return the name of each row's species, and the species of each name.
 
     Of several columns the first with a name that is known counts, Latin ones first; genus and
-    epithet in two columns are joined. Names in ``given`` are left as they are. Codes are read by
-    `species_codes`, for which it counts whether all trees are in the United States.
+    epithet in two columns are joined, a genus alone counts last. Names in ``given`` are left as
+    they are. Codes are read by `species_codes`, for which it counts whether all trees are in the
+    United States.
     """
     tables = [_decoded(columns, index, given) for index in columns.table.find_all('species')]
     if columns.index_of('genus') is not None:
-        pairs = zip(columns.texts_of('genus'), columns.texts_of('epithet'), strict=True)
-        tables.insert(0, [_joined(*pair) for pair in pairs])
+        genera = columns.texts_of('genus')
+        pairs = zip(genera, columns.texts_of('epithet'), strict=True)
+        tables = [[_joined(*pair) if pair[1] else '' for pair in pairs], *tables, genera]
     if not tables and (index := _column_of_names(columns)) is not None:
         tables.append(columns.texts(index))
         columns.note(f'{columns.table.columns[index]} is taken as the species, by its cells')
@@ -70,7 +72,7 @@ def species_of_rows(
             note += f'{other["meaning"]}: write that if it is'
         if note:
             notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})')
-    columns.note(*notes[:_MOST_NOTES])
+    columns.notes[:0] = notes[:_MOST_NOTES]
     return names, known
 
 
@@ -119,7 +121,7 @@ def _decoded(columns: InventoryColumns, index: int, given: Mapping[str, object])
 
 def _joined(genus: str, epithet: str) -> str:
     """Return a Latin name; the second cell alone if it has the genus too."""
-    if not genus or epithet.lower().startswith(genus.lower()):
+    if not genus or epithet.lower().startswith(genus.lower().split()[0]):
         return epithet
     return f'{genus} {epithet}'.strip()
 
