@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import islice, repeat, zip_longest
 from pathlib import Path
 from typing import Any
@@ -45,7 +46,8 @@ def read_spreadsheet(path: Path) -> TextTable:
     # A title, or a sheet of other things, may stand above: the header names species or sizes.
     rows, number = max(tables, key=lambda table: sum(map(is_known, table[0][table[1]])))
     below = {n: row for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)}
-    return table_of_cells(rows[number], below.values(), str(path), [*below])
+    table = table_of_cells(rows[number], below.values(), str(path), [*below])
+    return replace(table, header_line=number + 1)
 
 
 def sheets_of(path: Path) -> list[list[list[str]]]:

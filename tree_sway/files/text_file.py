@@ -9,6 +9,7 @@ huge one gives the same short error for each format.
 
 from __future__ import annotations
 
+from codecs import getincrementaldecoder
 from contextlib import suppress
 import math
 from pathlib import Path
@@ -24,11 +25,23 @@ MAX_LINES = 4_000_000
 
 # Each digit matches in one way only, so that the time is proportional to the length.
 _NUMBER = re.compile(r'[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?', re.ASCII)
-# Two kana, two syllables of Hangul; in code page 1252 these are rows of signs, such as low quotes.
-_ASIAN = (
-    (re.compile(rb'(?:\x82[\x9f-\xf1]|\x83[\x40-\x96]){2}'), 'cp932'),
-    (re.compile(rb'(?:[\xb0-\xc8][\xa1-\xfe]){2}'), 'cp949'),
-)
+_PAGES = {
+    'cp932': rb'\x82[\x9f-\xf1]|\x83[\x40-\x96]|[\x88-\x97].',
+    'cp949': rb'[\xb0-\xc8][\xa1-\xfe]',
+    'big5': rb'[\xa4-\xc6].',
+    'gb18030': rb'[\xb0-\xd7][\xa1-\xfe]',
+}
+"""
+Pages of two bytes a letter, and the bytes of their usual letters.
+
+These are kana and the kanji of the first level, Hangul, and the ideographs of the first level.
+Text of another page has few of them, and in code page 1252 they are rows of signs.
+"""
+_CENTRAL = re.compile(r'[a-z][³¹¿][a-z]|\A(?!.*[æå])(?=.*ø).*[ìšžïý]', re.DOTALL)
+"""Letters of Poland and Czechia, of code page 1250, as 1252 has them; Nordic ones beside ø."""
+_USUAL = 0.9
+"""Share of the letters of a text that are usual ones in its page."""
+_SAMPLE = 1 << 14
 _MARKS = {'utf-32': (b'\xff\xfe\0\0', b'\0\0\xfe\xff'), 'utf-16': (b'\xff\xfe', b'\xfe\xff')}
 """Byte order marks; that of UTF-32 begins as that of UTF-16."""
 _DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
@@ -72,8 +85,8 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
     """
     Return bytes as text: UTF-16 or UTF-32, UTF-8, else a code page of Windows.
 
-    That is 932 where kana stand in the text, 949 where Hangul does, else 1252; a spreadsheet
-    writes CSV in these.
+    That is the first of `_PAGES` in which nearly all letters are usual ones and two are side by
+    side, else 1250 or 1252; a spreadsheet writes CSV in these.
     ``errors`` is for bytes that are none of them.
     """
     for encoding, marks in _MARKS.items():
@@ -91,11 +104,23 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
         is_cut = errors == 'replace' and error.start > len(data) - 4
         if is_cut or b'\0' in data:
             return data.removeprefix(b'\xef\xbb\xbf').decode('utf-8', errors)
-    for letters, page in _ASIAN:
-        if letters.search(data):
-            with suppress(UnicodeDecodeError):
+        begin = data.rfind(b'\n', 0, error.start) + 1
+    for page, usual in _PAGES.items():
+        with suppress(UnicodeDecodeError):
+            if _is_of_page(data[begin : begin + _SAMPLE], page, usual):
                 return data.decode(page, errors)
-    return data.decode('cp1252', errors)
+    western = data[begin : begin + _SAMPLE].decode('cp1252', 'replace')
+    return data.decode('cp1250' if _CENTRAL.search(western) else 'cp1252', errors)
+
+
+def _is_of_page(data: bytes, page: str, usual: bytes) -> bool:
+    """Whether nearly all letters beyond ASCII are usual ones of a page, and two side by side."""
+    text = getincrementaldecoder(page)().decode(data)  # a letter may be cut at the end
+    is_usual = re.compile(usual, re.DOTALL).fullmatch
+    runs = re.findall(r'[^\W\d_\x00-\x7f]+', text)
+    letters = ''.join(runs)
+    count = sum(is_usual(letter.encode(page)) is not None for letter in letters)
+    return max(map(len, runs), default=0) > 1 and count >= _USUAL * len(letters)
 
 
 def read_text(path: Path) -> str:

@@ -91,6 +91,11 @@ _KEYS |= {_plain(name): key for key, names in NAMES.items() for name in names}
 _SUGGESTED = [*(name for name in _KEYS if len(name) > 3), *SPECIES]
 """Keys and names to suggest; an abbreviation is near to too many words."""
 _ENDS = sorted((name for name in _KEYS if len(name) >= _SHORTEST_END), key=len, reverse=True)
+_GENERA = {'sophora', *(names[0].split()[0] for names in NAMES.values())}
+"""Genera of the table: a name that begins with one is Latin, and counts before others."""
+_IN_BRACKETS = re.compile(r'[(\[]([^)\]]*)[)\]]?')
+_LISTED = re.compile(r'[/&+;]|,.*,')
+_BETWEEN = re.compile('[,/&+;:]')
 _FILE = re.compile(r'\.(ya?ml|json|csv)\s*$', re.IGNORECASE)
 _CONIFEROUS = re.compile(
     r'conifer|nadel|needle|(c|z)[iy]pre|ceda?r|zeder|yew|eibe|hemlock|redwood|tasso|'
@@ -101,6 +106,9 @@ _CONIFEROUS = re.compile(
 def species_named(name: str) -> Species:
     """
     Look a species up by its key, a name or its genus, in any case of letters.
+
+    A name in brackets counts as well, a Latin one first, as in ``Field maple (Acer campestre)``,
+    and one that is turned round by a comma, as ``Chestnut, horse``.
 
     Raises
     ------
@@ -116,12 +124,16 @@ def species_named(name: str) -> Species:
     if _FILE.search(name):
         cure = 'give the name of a species; only the option --species reads a file'
         raise SpeciesError(f"'{name}' is the name of a file", cure=cure)
+    if _has_several(name):
+        raise SpeciesError(f"several species in '{name}'", cure='give one')
+    for reading in _readings(name):
+        words = reading.split()
+        # A first word alone is a genus; pin oak is no pine, though that is pin in French.
+        is_genus = len(words) == 1 or (len(words[0]) >= _SHORTEST_END and not _has_noun(words))
+        for known in (reading, ' '.join(words[:2]), *words[:is_genus]):
+            if known in _KEYS:
+                return SPECIES[_KEYS[known]]
     words = _plain(name).split()
-    # A first word alone is a genus; pin oak is no pine, though that is pin in French.
-    genus = [word for word in words[:1] if len(words) == 1 or len(word) >= _SHORTEST_END]
-    for known in (' '.join(words), ' '.join(words[:2]), *genus):
-        if known in _KEYS:
-            return SPECIES[_KEYS[known]]
     # Of two words, one may be right: the whole name is far from each known name.
     guesses = (nearest(each, _SUGGESTED) for each in (' '.join(words), *words))
     guess = next(filter(None, guesses), '')
@@ -129,8 +141,29 @@ def species_named(name: str) -> Species:
     raise SpeciesError(f"unknown species '{name}'", cure=cure)
 
 
-_LIKE = 0.65
-"""Least share of common letters of a guess: that of two names which end with baum is less."""
+def _readings(name: str) -> list[str]:
+    """Plain names that a text has outside and inside brackets, Latin ones first."""
+    around = _IN_BRACKETS.sub(' ', name)
+    first, _, last = around.partition(',')
+    readings = [_plain(each) for each in (f'{last} {first}', around, *_IN_BRACKETS.findall(name))]
+    return sorted(filter(None, readings), key=lambda each: each.split()[0] not in _GENERA)
+
+
+def _has_several(name: str) -> bool:
+    """Whether a text lists trees of several species, as ``ash, oak, field maple``."""
+    listed = map(_plain, _BETWEEN.split(name) if _LISTED.search(name) else ())
+    keys = (_KEYS.get(each) or _KEYS.get(each.rpartition(' ')[2]) for each in listed)
+    return len({*filter(None, keys)}) > 1
+
+
+def _has_noun(words: list[str]) -> bool:
+    """Whether a name ends with that of a tree which the first of two words is not: willow oak."""
+    return len(words) == 2 and words[0] not in _GENERA and words[1] in _KEYS
+
+
+_LIKE = {1: 1.0, 2: 1.0, 3: 0.65, 4: 0.65}
+"""Least share of common letters of a guess for a short name; two letters are a code."""
+_LIKE_LONG = 0.8
 
 
 def species_like(name: str) -> tuple[Species, str]:
@@ -151,18 +184,18 @@ def species_like(name: str) -> tuple[Species, str]:
     except SpeciesError:
         pass
     plain = _plain(name)
-    first = (plain.split() or [''])[0]
-    last = (plain.split() or [''])[-1]
-    ends = (each for each in _ENDS if last.endswith(each))
-    # Foresters' abbreviations of two letters, as Fi for spruce, are whole names alone.
-    first, last = (each if len(each) > 2 else '' for each in (first, last))
-    end = last if last in _KEYS else next(ends, first if first in _KEYS else '')
-    if end:
-        group = SPECIES[_KEYS[end]]
-        return group, f"'{name[:40]}' is taken as {group.title}"
+    for words in map(str.split, _readings(name) if not _has_several(name) else ()):
+        ends = (each for each in _ENDS if words[-1].endswith(each))
+        # Foresters' abbreviations of two letters, as Fi for spruce, are whole names alone.
+        first, last = (each if len(each) > 2 else '' for each in (words[0], words[-1]))
+        end = last if last in _KEYS else next(ends, first if first in _KEYS else '')
+        if end:
+            group = SPECIES[_KEYS[end]]
+            return group, f"'{name[:40]}' is taken as {group.title}"
     group = SPECIES['conifer' if _CONIFEROUS.search(plain) else 'broadleaf']
     note = f"'{name[:40]}' is not in the table: taken as {group.title}"
-    return group, '; '.join(filter(None, (note, nearest(plain, _SUGGESTED, _LIKE))))
+    guess = nearest(plain, _SUGGESTED, _LIKE.get(len(plain), _LIKE_LONG))
+    return group, '; '.join(filter(None, (note, guess)))
 
 
 def species_keys() -> tuple[str, ...]:

@@ -50,12 +50,14 @@ def header_line(lines: Sequence[str]) -> int | None:
     """
     Line of the header: the first of those that name most quantities.
 
-    A comment is one only where no other line names two. It is below the heads of LabVIEW.
+    A comment is one only where no other line names two. It is below the heads of LabVIEW. A line
+    with numbers is a row where one above it that names two has as many cells and no number.
     """
     plain: dict[int, int] = {}
     hashed: dict[int, int] = {}
     ends = (number for number, line in enumerate(lines[:_HEAD]) if line.startswith(_HEAD_ENDS))
     first = max(ends, default=0)
+    sizes = set[int]()
     for number, line in enumerate(lines[first:_HEAD], start=first):
         filled = list(filter(None, _cells(line)))
         n_numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
@@ -64,6 +66,11 @@ def header_line(lines: Sequence[str]) -> int | None:
             filled = _cells(_uncommented(line))
         if len(filled) > 1 and 2 * n_numbers <= len(filled):
             count = sum(map(is_known, {*_without_place(filled[:_MOST_COLUMNS])}))
+            size = len(_cells(line))
+            if n_numbers and size in sizes:
+                continue
+            if count > 1 and not n_numbers:
+                sizes.add(size)
             (hashed if is_comment else plain)[number] = count
     found = plain if max(plain.values(), default=0) > 1 else plain | hashed
     most = max(found, key=lambda number: found[number], default=None)

@@ -41,6 +41,7 @@ class InventoryColumns:
         self.has_inches = False
         """Whether stems are in inches, so that heights may be in feet."""
         self.is_kept: NDArray[np.bool_] = np.ones(self.n_rows, dtype=np.bool_)
+        self._texts: dict[int, list[str]] = {}
         self._reasons = Counter[str]()
         self._first = ''
 
@@ -101,7 +102,9 @@ class InventoryColumns:
     def texts(self, index: int) -> list[str]:
         """Texts of a column."""
         self.used.add(index)
-        return self.table.cells(index, self.table.rows)
+        if index not in self._texts:  # splitting lines takes most of the time of long tables
+            self._texts[index] = self.table.cells(index, self.table.rows)
+        return self._texts[index]
 
     def numbers(self, index: int, *, stems: bool = False, unit: str = '') -> tuple[Floats, str]:
         """
@@ -117,6 +120,8 @@ class InventoryColumns:
         n_several = 0
         unread = list[int]()
         for row, text in enumerate(self.texts(index)):
+            if not self.is_kept[row]:
+                continue
             found = stems_number(text) if stems else cell_number(text)
             if found is None:
                 if stems and any(map(str.isdigit, text)):
@@ -139,7 +144,7 @@ class InventoryColumns:
 
     def _drop_nines(self, values: Floats, index: int) -> None:
         """Take ``99``, ``999`` and so on for a missing value where no other is nearly as large."""
-        cells = self.table.cells(index, self.table.rows)
+        cells = self.texts(index)
         is_code = are_nines(cells, values)
         if is_code.any():
             name, cell = self.table.columns[index], cells[int(np.argmax(is_code))]

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import re
@@ -14,36 +15,31 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.species import Species
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import folded, INVENTORY
+from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES
+from tree_sway.files.scenes.inventory.no_trees import (
+    gone_by_codes,
+    GROUP,
+    said_of_none,
+    UNKNOWN,
+)
 from tree_sway.files.scenes.inventory.places import about_centre, places_of
-from tree_sway.files.scenes.inventory.sizes import diameters_of, fill_heights, heights_of
+from tree_sway.files.scenes.inventory.sizes import (
+    diameters_of,
+    fill_heights,
+    heights_of,
+    leave_out_without_size,
+    refuse_list_of_species,
+)
 from tree_sway.files.scenes.inventory.species_names import species_of_rows
 from tree_sway.files.table_file import TextTable
 from tree_sway.simulation import EXPOSURES
 
 T = TypeVar('T')
-_DEAD = re.compile(
-    r'\b(dead|stump|removed|felled|fallen|retired|vacant|tot|abgestorben|gefällt|stubben|mort|'
-    r'abattu|souche|muerto|seco|tocón|vacía|vacío|dood|död)\b',
-    re.IGNORECASE,
-)
-_SAYS_DEAD = {
-    'status': _DEAD,
-    'alive': re.compile('^(false|no|non|0|dead)$', re.IGNORECASE),
-    'dead': re.compile('^(true|yes|oui|si|1|dead)$', re.IGNORECASE),
-}
-"""Cells of a column of the state of trees, of living or of dead ones that say that one is dead."""
-_CODES = (
-    ('status', 'A AB AS D G M P L', 'A L', 'D'),
-    ('statuscd', '0 1 2 3', '1', '2 3'),
-)
-"""
-Columns of codes: all of them, those of living trees, and of trees that are dead or gone.
-
-ForestGEO (forestgeo/fgeo.validate), with the L of plots that have L and D; FIA (user guide).
-"""
+_OF_SCHEDULE = re.compile(r'([A-Z]) ?\d+[a-z]?')
+_KINDS_OF_SCHEDULE = set('TGHWAS')
+"""Trees, groups, hedges, woodlands, areas and shrubs, as BS 5837 and orders of councils count."""
 
 
 @dataclass(frozen=True)
@@ -117,26 +113,25 @@ def inventory_of(
     # Among columns of other things, as of lamps, a place and a height do not make a tree.
     may_lack = SPECIES if not table.find_all('other_thing') else ''
     missing = missing_columns(table)
-    if any(each != may_lack and (needs_place or 'place' not in each) for each in missing):
-        what = f'no column for {" and none for ".join(missing)} among '
-        what += ', '.join(table.columns[:20])
-        cure = 'give a row for each tree, with place, species, and height or dbh'
-        cure = f'name them so in the header, if it is an inventory: {cure} (doc/trees.md)'
-        is_one = len(missing) < len(INVENTORY)
-        raise table.error(what if is_one else 'no column of an inventory', cure=cure)
+    place = next((each for each in missing if 'place' in each), '')
+    if {*missing} - {place, may_lack}:
+        raise _lacking(table, missing)
     columns = InventoryColumns(table)
     found = places_of(columns)
-    x, y = np.zeros((2, columns.n_rows)) if found is None else found
-    _leave_out_dead(columns)
-    names, wood = species_of_rows(columns, given)
-    keys = [wood[each].key if each in wood else each for each in names]
+    _leave_out_no_trees(columns)
     diameter = diameters_of(columns)
     height = heights_of(columns, diameter)
     if found is None:
+        refuse_list_of_species(columns, diameter)
         found = about_centre(columns)
-        x, y = found or (x, y)
+    if found is None and needs_place:
+        raise _lacking(table, [place])
+    x, y = np.zeros((2, columns.n_rows)) if found is None else found
     for row in np.flatnonzero(~np.isfinite(x + y)).tolist():
         columns.leave_out(row, 'no place', _why_no_place(columns, row))
+    leave_out_without_size(columns, height, diameter)
+    names, wood = species_of_rows(columns, given)
+    keys = [wood[each].key if each in wood else each for each in names]
     is_found = fill_heights(columns, height, diameter, keys)
     kept = np.flatnonzero(columns.is_kept).tolist()
     columns.note(columns.why_left_out())
@@ -178,22 +173,50 @@ def inventory_of(
     )
 
 
-def _leave_out_dead(columns: InventoryColumns) -> None:
-    for quantity, says_dead in _SAYS_DEAD.items():
+def _lacking(table: TextTable, missing: Sequence[str]) -> FormatError:
+    """Make the error of a table that lacks columns of an inventory."""
+    what = f'no column for {" and none for ".join(missing)} among '
+    what += ', '.join([*filter(None, table.columns)][:20])
+    cure = 'give a row for each tree, with place, species, and height or dbh'
+    cure = f'name them so in the header, if it is an inventory: {cure} (doc/trees.md)'
+    if len(missing) == 1 and 'place' in missing[0]:
+        cure = f'a scene needs it; tree-sway risk reads trees without; {cure}'
+    is_none = len(missing) == len(INVENTORY)
+    return table.error('no column of an inventory' if is_none else what, cure=cure)
+
+
+def _leave_out_no_trees(columns: InventoryColumns) -> None:
+    """Leave out the rows of dead trees, stumps, empty places, groups, and of no tree at all."""
+    for quantity in ('status', 'species', 'genus', 'alive', 'dead'):
         for index in columns.table.find_all(quantity):
             texts = columns.texts(index)
-            gone = _codes_of_gone(folded(columns.table.columns[index]), {*texts})
+            gone = gone_by_codes(columns.table.columns[index], quantity, {*texts})
+            none = {'', UNKNOWN, GROUP if quantity == 'status' else ''}
             for row, text in enumerate(texts):
-                if says_dead.search(text) or text in gone:
-                    columns.leave_out(row, 'dead or gone', columns.told(index, row))
+                why = 'dead or gone' if text in gone else said_of_none(text)
+                if why not in none:
+                    columns.leave_out(row, why, columns.told(index, row))
+    for index in columns.table.find_all('tree_name')[:1]:
+        kinds = [_OF_SCHEDULE.fullmatch(text) for text in columns.texts(index)]
+        if {'T'} < {each[1] for each in kinds if each} <= _KINDS_OF_SCHEDULE:
+            for row, each in enumerate(kinds):
+                if each and each[1] != 'T':
+                    columns.leave_out(row, GROUP, columns.told(index, row))
+    for index in columns.table.find_all('tree_count')[:1]:
+        _count_trees(columns, index)
 
 
-def _codes_of_gone(column: str, texts: set[str]) -> list[str]:
-    """Codes of dead trees in a column whose cells are codes, some of them of living trees."""
-    for name, known, alive, gone in _CODES:
-        if name == column and texts <= {'', *known.split()} and texts & {*alive.split()}:
-            return gone.split()
-    return []
+def _count_trees(columns: InventoryColumns, index: int) -> None:
+    """Leave out rows of no tree, and tell of those that stand for several."""
+    count, _ = columns.numbers(index)
+    for row in np.flatnonzero(count == 0.0).tolist():
+        columns.leave_out(row, 'without a tree', columns.told(index, row))
+    rows = np.flatnonzero(columns.is_kept & (count > 1.0)).tolist()
+    if rows:
+        columns.note(
+            f'rows for several trees by {columns.table.columns[index]}: {len(rows)}, '
+            f'{columns.line(rows[0])} for {count[rows[0]]:.0f}; each is taken as one tree'
+        )
 
 
 def _double(columns: InventoryColumns, kept: list[int], cells: Sequence[Any]) -> str:
@@ -235,7 +258,7 @@ def _optional(columns: InventoryColumns, quantity: str) -> Floats:
 
 def _why_no_place(columns: InventoryColumns, row: int) -> str:
     names = ('x', 'y', 'latitude', 'longitude', 'place')
-    places = [index for index in map(columns.index_of, names) if index is not None]
+    places = [index for index in map(columns.index_of, names) if index in columns.used]
     wrong = [each for each in places if not any(map(str.isdigit, columns.cell(each, row)))]
     told = [columns.told(each, row) for each in wrong[:1] or places]
     return f'{" and ".join(told)}, no place'
@@ -243,19 +266,22 @@ def _why_no_place(columns: InventoryColumns, row: int) -> str:
 
 def _names(columns: InventoryColumns, kept: list[int]) -> list[str]:
     """Names of trees, each once: a further one of a name gets its number."""
-    texts = columns.texts_of('tree_name')
-    names = list[str]()
+    # Of several the first that tells the trees apart: numbers may begin anew in each street.
+    index = max(
+        columns.table.find_all('tree_name'),
+        key=lambda each: round(len({*columns.table.cells(each, kept)}) / len(kept), 1),
+        default=None,
+    )
+    texts = [''] * columns.n_rows if index is None else columns.texts(index)
+    names = Counter[str]()
     n_changed = 0
-    counts: dict[str, int] = {}
     for row in kept:
-        name = texts[row].replace('/', '-') or f'tree{row + 1}'
-        count = counts[name] = counts.get(name, 0) + 1
-        n_changed += count > 1 or name != (texts[row] or name)
-        while count > 1 and f'{name}-{count}' in counts:
-            count += 1
-        whole = name if count == 1 else f'{name}-{count}'
-        counts.setdefault(whole, 1)
-        names.append(whole)
+        name = whole = texts[row].replace('/', '-') or f'tree{row + 1}'
+        while whole in names:
+            names[name] += 1
+            whole = f'{name}-{names[name]}'
+        names[whole] = 1
+        n_changed += whole != (texts[row] or name)
     if n_changed:
         columns.note(f'{n_changed} names are changed, as they occur twice or have a slash')
-    return names
+    return [*names]

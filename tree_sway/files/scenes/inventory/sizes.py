@@ -103,6 +103,8 @@ def _stem_unit(values: Floats, columns: InventoryColumns) -> tuple[float, str]:
     if factor == _FOOT:
         return _INCH, ', as heights are in feet'
     ratio = _slenderness(height * (factor or 1.0), values * _CM)
+    if ratio * _CM / _MM > _SLENDER[0] > ratio > 0.0:
+        return _MM, ', by height over it'
     in_inches = ratio * _CM / _INCH
     if ratio > _SLENDER[1] and _SLENDER[0] < in_inches < _SLENDER[1]:
         return _INCH, ', by height over it'
@@ -189,18 +191,33 @@ def heights_of(columns: InventoryColumns, diameter: Floats) -> Floats:
     return height
 
 
+def refuse_list_of_species(columns: InventoryColumns, diameter: Floats) -> None:
+    """Raise a `FormatError` for heights that are all ranges, without a stem or name of a tree."""
+    cells = [cell for cell in columns.texts_of('height') if any(map(str.isdigit, cell))]
+    has_trees = np.isfinite(diameter).any() or columns.table.find_all('tree_name')
+    if cells and not has_trees and all('-' in cell or '–' in cell for cell in cells):
+        raise columns.table.error(
+            f"a list of species and no inventory: heights are ranges, as '{cells[0][:40]}', and "
+            'there is no stem, place or name of a tree',
+            cure='give a row for each tree, with its own height or stem',
+        )
+
+
+def leave_out_without_size(columns: InventoryColumns, height: Floats, diameter: Floats) -> None:
+    """Leave out the rows without a height and without a stem."""
+    for row in np.flatnonzero(np.isnan(height) & np.isnan(diameter)).tolist():
+        columns.leave_out(row, 'no height and no stem', _why_no_size(columns, row))
+
+
 def fill_heights(
     columns: InventoryColumns, height: Floats, diameter: Floats, keys: list[str]
 ) -> list[bool]:
     """
     Give each kept row without a height that of a grown tree of its stem, in place.
 
-    Returns whether a row's height is such. Rows without a stem as well are left out.
+    Returns whether a row's height is such.
     """
-    missing = np.isnan(height) & columns.is_kept
-    is_found = missing & np.isfinite(diameter)
-    for row in np.flatnonzero(missing & ~is_found).tolist():
-        columns.leave_out(row, 'no height and no stem', _why_no_size(columns, row))
+    is_found = np.isnan(height) & columns.is_kept
     grown = cache(height_of_stem)
     rows = np.flatnonzero(is_found).tolist()
     for row in rows:

@@ -9,9 +9,12 @@ from collections.abc import Mapping
 from functools import cache, partial
 import re
 
+import numpy as np
+
 from tree_sway.core.species import Species, species_like, species_named
 from tree_sway.errors import SpeciesError
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
+from tree_sway.files.scenes.inventory.no_trees import said_of_none, UNKNOWN
 from tree_sway.files.scenes.inventory.species_codes import (
     has_codes,
     latin_name,
@@ -28,8 +31,6 @@ _UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
 _GENERAL = ('broadleaf', 'conifer')
 """Trees of no known species."""
-_NO_EPITHETS = 'sp sp. spp spp. species'.split()
-"""Cells that say that the epithet is not known, and would else be read as abbreviations."""
 _MOST_NOTES = 20
 _SHORTEST_NAME = 3
 _TRIED = 50
@@ -43,20 +44,22 @@ def species_of_rows(
     Return the name of each row's species, and the species of each name.
 
     Of several columns the first with a name that is known counts, Latin ones first; genus and
-    epithet in two columns are joined. Names in ``given`` are left as they are. Codes are read by
-    `species_codes`, for which it counts whether all trees are in the United States.
+    epithet in two columns are joined, a genus alone counts last. Names in ``given`` are left as
+    they are. Codes are read by `species_codes`, for which it counts whether all trees are in the
+    United States.
     """
     tables = [_decoded(columns, index, given) for index in columns.table.find_all('species')]
     if columns.index_of('genus') is not None:
-        pairs = zip(columns.texts_of('genus'), columns.texts_of('epithet'), strict=True)
-        tables.insert(0, [_joined(*pair) for pair in pairs])
+        genera = columns.texts_of('genus')
+        pairs = zip(genera, columns.texts_of('epithet'), strict=True)
+        tables = [[_joined(*pair) if pair[1] else '' for pair in pairs], *tables, genera]
     if not tables and (index := _column_of_names(columns)) is not None:
         tables.append(columns.texts(index))
         columns.note(f'{columns.table.columns[index]} is taken as the species, by its cells')
     chosen = cache(partial(_chosen, given=given))
     names = [*map(chosen, zip(*(tables or [[''] * columns.n_rows]), strict=True))]
     known: dict[str, Species] = {}
-    counts = Counter(names)
+    counts = Counter(names[row] for row in np.flatnonzero(columns.is_kept))
     notes = []
     for name, count in counts.most_common():
         if name in given:
@@ -69,7 +72,7 @@ def species_of_rows(
             note += f'{other["meaning"]}: write that if it is'
         if note:
             notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})')
-    columns.note(*notes[:_MOST_NOTES])
+    columns.notes[:0] = notes[:_MOST_NOTES]
     return names, known
 
 
@@ -118,7 +121,7 @@ def _decoded(columns: InventoryColumns, index: int, given: Mapping[str, object])
 
 def _joined(genus: str, epithet: str) -> str:
     """Return a Latin name; the second cell alone if it has the genus too."""
-    if not genus or epithet.lower().startswith(genus.lower()):
+    if not genus or epithet.lower().startswith(genus.lower().split()[0]):
         return epithet
     return f'{genus} {epithet}'.strip()
 
@@ -127,8 +130,8 @@ def _chosen(cells: tuple[str, ...], given: Mapping[str, object]) -> str:
     """First name of a species, else of a broadleaf or conifer, else the first that is there."""
     # A cell may have several names of one species, as a common and a Latin one.
     parts = [part.strip() for cell in cells for part in re.split(r'::|\|', cell) if part.strip()]
-    parts = [part for part in parts if part.lower() not in _NO_EPITHETS]
     for name in parts:
         if name in given:
             return name
+    parts = [part for part in parts if said_of_none(part) != UNKNOWN]
     return max(parts, default='', key=_specificity)  # the first of those that say most
