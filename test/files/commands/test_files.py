@@ -251,3 +251,15 @@ def test_where_nothing_can_be_written_is_said_before_any_work(
 def test_a_name_without_a_suffix_is_called_so(tmp_path, capsys):
     assert cli.main(['convert', 'goldcrest', '-o', str(tmp_path / 'tree')]) == 2
     assert 'a name without a suffix; use .yaml' in capsys.readouterr().err
+
+
+def test_the_speed_of_a_wind_is_that_of_the_animation(tmp_path: Path) -> None:
+    moved = []
+    for speed in ([], ['--speed', '6'], ['--speed', '12']):
+        glb, usda = (tmp_path / f'{len(moved)}{suffix}' for suffix in ('.glb', '.usda'))
+        for path in (glb, usda):
+            assert cli.main(['convert', SEEDLING, *speed, '-o', str(path)]) == 0
+        moved.append((glb.read_bytes(), usda.read_text().partition('def Scope')[0]))
+    assert moved[0] == moved[1]
+    assert moved[0][0] != moved[2][0]
+    assert moved[0][1] != moved[2][1]

@@ -33,6 +33,7 @@ from tree_sway.files.commands.wind_arguments import (
     add_wind_arguments,
     opened_wind,
     refuse_unused_wind,
+    simulated_speed,
 )
 from tree_sway.files.export import mjcf_of_tree, morphing_tree, write_tree
 from tree_sway.files.export.hinged_tree_writing import sdf_of_tree
@@ -83,8 +84,6 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.at is not None and suffix != '.obj':
         raise ParameterError(f"'{output}' is of no moment", where='--at', cure='write .obj files')
     refuse_unused_wind(arguments)
-    if arguments.at is None and (arguments.wind is not None or arguments.speed is not None):
-        refuse_unused('--speed' if arguments.wind is None else '--wind', '--at SECONDS')
     if arguments.sway is not None and suffix != '.glb':
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
     if arguments.leaves is None:
@@ -93,15 +92,20 @@ def run(arguments: argparse.Namespace) -> int:
     count = max(1, len(moments))
     paths = numbered_paths(output, count, may_overwrite=suffix != '.obj' or arguments.force)
     scene = opened_scene(arguments)
+    sways = suffix in _USD or (suffix == '.glb' and _is_to_sway(scene, arguments))
+    if arguments.at is None:
+        needs = '--at SECONDS, for .obj files'
+        if arguments.wind is not None:
+            refuse_unused('--wind', needs)
+        if arguments.speed is not None and not sways:
+            refuse_unused('--speed', needs)
     for note in scene.notes:
         say(note)
     if suffix == '.obj':
         _write_moments(scene, arguments, moments, paths)
     elif suffix == '.html':
         _write_page(scene, arguments)
-    elif suffix in (*_USD, *_HINGED, *_PREPARED) or (
-        suffix == '.glb' and _is_to_sway(scene, arguments)
-    ):
+    elif sways or suffix in (*_HINGED, *_PREPARED):
         _write_swaying(scene, arguments, suffix)
     elif suffix != '.glb' and scene.is_one_tree:
         one = scene.trees[0]
@@ -168,14 +172,17 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             model = prepare(scene.tree, scene.species, solved(settings))
         _PREPARED[suffix](arguments.output, model)
         return
+    speed = simulated_speed(arguments)
     with waiting('finding what sways'):
         simulator = make_simulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)
         if suffix == '.glb':
             small = arguments.sway != 'floats'
-            write_gltf(arguments.output, morphing_tree(simulator, leaves, small=small))
+            write_gltf(
+                arguments.output, morphing_tree(simulator, leaves, small=small, speed=speed)
+            )
         elif suffix in _USD:
-            write_usd(arguments.output, simulator, leaves)
+            write_usd(arguments.output, simulator, leaves, speed)
         else:
             write_text_whole(arguments.output, _HINGED[suffix](simulator))
 
