@@ -263,3 +263,23 @@ def test_the_speed_of_a_wind_is_that_of_the_animation(tmp_path: Path) -> None:
     assert moved[0] == moved[1]
     assert moved[0][0] != moved[2][0]
     assert moved[0][1] != moved[2][1]
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'told'),
+    [
+        (['-o', 'a.glb'], 'leaves on, 20 s of wind'),
+        (['-o', 'a.usdz', '--leaves', 'off'], 'leaves off, 10 s of wind'),
+        (['-o', 'a.glb', '--sway', 'skin'], 'leaves on'),
+        (['-o', 'a.yaml'], ''),
+    ],
+)
+def test_what_is_in_a_file_is_told_in_a_line(
+    arguments: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(['convert', SEEDLING, *arguments]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    size = f'{Path(arguments[1]).stat().st_size / 1e6:.2g} MB'
+    assert line.endswith('; ' + ', '.join(filter(None, (size, told))))

@@ -36,6 +36,7 @@ from tree_sway.files.commands.wind_arguments import (
     simulated_speed,
 )
 from tree_sway.files.export import mjcf_of_tree, morphing_tree, write_tree
+from tree_sway.files.export.breeze import SECONDS
 from tree_sway.files.export.hinged_tree_writing import sdf_of_tree
 from tree_sway.files.export.obj_scene import ObjScene
 from tree_sway.files.export.tree_export import SUFFIXES, write_gltf
@@ -92,7 +93,9 @@ def run(arguments: argparse.Namespace) -> int:
     count = max(1, len(moments))
     paths = numbered_paths(output, count, may_overwrite=suffix != '.obj' or arguments.force)
     scene = opened_scene(arguments)
-    sways = suffix in _USD or (suffix == '.glb' and _is_to_sway(scene, arguments))
+    # A single tree has a breeze and weights in a .glb, unless a skin is asked for.
+    way = arguments.sway or ('morph' if scene.is_one_tree else 'skin')
+    sways = suffix in _USD or (suffix == '.glb' and way != 'skin')
     if arguments.at is None:
         needs = '--at SECONDS, for .obj files'
         if arguments.wind is not None:
@@ -114,7 +117,12 @@ def run(arguments: argparse.Namespace) -> int:
         leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
         write_tree(output, scene.tree, leaves=leaves)
     written = f'{paths[0]} to {paths[-1].name}, {count} moments' if count > 1 else paths[0]
-    print(what_was_written(str(written), scene.tree))
+    told = f'{sum(path.stat().st_size for path in paths) / 1e6:.2g} MB'
+    if suffix in _DRAWN:
+        told += f', leaves {arguments.leaves}'
+    if sways:
+        told += f', {SECONDS[suffix]:g} s of wind'
+    print(f'{what_was_written(str(written), scene.tree)}; {told}')
     return 0
 
 
@@ -185,8 +193,3 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             write_usd(arguments.output, simulator, leaves, speed)
         else:
             write_text_whole(arguments.output, _HINGED[suffix](simulator))
-
-
-def _is_to_sway(scene: Scene, arguments: argparse.Namespace) -> bool:
-    """Whether a .glb has a breeze and weights: a single tree, unless a skin is asked for."""
-    return arguments.sway in ('morph', 'floats') or (arguments.sway is None and scene.is_one_tree)

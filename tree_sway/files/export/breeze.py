@@ -38,9 +38,8 @@ def in_breeze(
     A sample of each frame is returned, from when the rest is forgotten; the last is the first.
     """
     before = simulator.state()
-    rng = np.random.default_rng(7)
     duration = seconds + _BLENDED * _DT
-    wind = simulate_turbulence(speed, rate=1.0 / _DT, duration=duration, rng=rng)
+    wind = simulate_turbulence(speed, rate=1.0 / _DT, duration=duration, rng=7)
     wind, behind = np.split(wind, [-_BLENDED])
     wind[:_BLENDED] += np.linspace(1.0, 0.0, _BLENDED)[:, None] * (behind - wind[:_BLENDED])
     for each in wind:
