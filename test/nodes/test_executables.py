@@ -8,6 +8,8 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
+from tree_sway_ros.nodes import executables  # noqa: E402
+from tree_sway_ros.process.composition import NODES  # noqa: E402
 from tree_sway_ros.process.topics import SEGMENT_POSES  # noqa: E402
 from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
@@ -62,6 +64,28 @@ def test_what_the_user_can_mend_is_one_line_and_exit_code_2(
     assert errors.splitlines()[-1].startswith(f'{name}: ')
     assert message in errors
     assert 'Traceback' not in errors
+
+
+@pytest.mark.parametrize('name', NODES)
+def test_help_is_printed_and_no_node_starts(name, capsys):
+    for option in ('--help', '-h'):
+        with pytest.raises(SystemExit) as ended:
+            getattr(executables, name)([option])
+        assert ended.value.code == 0
+        told = ' '.join(capsys.readouterr().out.split())
+        assert f'The {name} node: ' in told
+        assert '--ros-args -p name:=value' in told
+        assert 'doc/reference.md' in told
+
+
+@pytest.mark.parametrize('given', [['rate:=40'], ['--rate', '40', '--ros-args']])
+def test_what_ros_would_ignore_is_refused(given, capsys):
+    with pytest.raises(SystemExit) as ended:
+        executables.anemometer(given)
+    assert ended.value.code == 2
+    told = capsys.readouterr().err
+    assert f'anemometer: error: unrecognized arguments: {given[0]}' in told
+    assert '--ros-args -p NAME:=VALUE' in told
 
 
 def test_without_ros_one_line_says_so(run):

@@ -16,6 +16,9 @@ from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
 from tree_sway_ros.commands.watch import watch
 
+_DISCOVERY, _LONGEST_WAIT = 2.0, 30.0
+"""Times for the first poses [s]: until programs have found each other, and at most."""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
@@ -26,10 +29,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Listen until the time is over or Ctrl-C."""
+    """Listen until the time is over or Ctrl-C, or as long without poses."""
     seconds = seconds_of(arguments)
     with Ending() as ending, StreamMonitor(None, None, arguments.namespace) as monitor:
         ending.limit = Ending.LONGEST
-        watch(monitor, seconds, lambda: True)
+        patience = min(max(seconds, _DISCOVERY), _LONGEST_WAIT)
+        watch(monitor, seconds, lambda: True, patience=patience)
         print(summary(monitor.totals, arguments.rate), flush=True)
     return 0

@@ -27,9 +27,8 @@ from tree_sway_ros.commands.duration import add_seconds, seconds_of
 _LOOK = 0.2
 _RATE_OF_WIND, _RATE_OF_PAGE = 20.0, 60.0
 
-_SILENT, _UNREACHED, _PATIENCE = 3.0, 12.0, 30.0
-"""Times without a first frame [s] until that is said, and until a page is given up that is not
-reached, or that is connected but sends none."""
+_SILENT = 3.0
+"""Time without a first frame after which that is said [s]."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -65,7 +64,7 @@ def _to_topics(arguments: argparse.Namespace, url: str, seconds: float) -> int:
     with Ending() as ending, Listener('tree_sway_relay', arguments.namespace) as site:
         relay = Relay(site.node)
         with StreamClient(url, rate=rate, wind_only=True, on_frame=relay.take) as client:
-            wait_for_frames(client)
+            wait_for_frames(client, seconds)
             print(f'relaying the wind of {client.url}', flush=True)
             end = time.monotonic() + seconds
             while not ending.is_asked and time.monotonic() < end:
@@ -90,7 +89,7 @@ def _to_page(arguments: argparse.Namespace, url: str, seconds: float) -> int:
     server = PageServer(page_settings(arguments), status=status)
     client = StreamClient(url, rate=arguments.rate or _RATE_OF_PAGE, on_message=take)
     with Ending(is_last=True) as ending, server, client:
-        wait_for_frames(client)
+        wait_for_frames(client, seconds)
         ending.look()
         print_address(server, f'relaying {client.url} to')
         if arguments.open:
@@ -106,29 +105,29 @@ def _to_page(arguments: argparse.Namespace, url: str, seconds: float) -> int:
     return 0
 
 
-def wait_for_frames(client: StreamClient) -> None:
+def wait_for_frames(client: StreamClient, seconds: float) -> None:
     """
-    Wait for the first frame; say after some seconds why there is none yet.
+    Wait for the first frame, at most for a time [s]; say why there is none yet.
 
     Raises
     ------
     TransportError
-        The server refuses, is not reached, or has no frame to send.
+        The server refuses for good, or no frame comes within the time.
 
     """
-    if client.has_frames(_SILENT):
-        return
-    problem = client.problem or 'no answer'
-    print(f'waiting for {client.url} ({problem}); Ctrl-C ends it', flush=True)
-    if client.has_frames(_UNREACHED - _SILENT):
-        return
-    if client.state != 'open':
-        raise TransportError(
-            f'not reached within {_UNREACHED:g} s ({client.problem or "no answer"})',
-            where=client.url,
-            cure='check the address, and that tree-sway show or the node viewer runs there',
-        )
-    client.wait(_PATIENCE - _UNREACHED)
+    told = ''
+    while not client.has_frames(min(_SILENT, seconds)):
+        seconds -= _SILENT
+        problem = client.problem or 'no answer'
+        if seconds <= 0.0:
+            raise TransportError(
+                f'no frame in time ({problem})',
+                where=client.url,
+                cure='check the address, and that tree-sway show or the node viewer runs there',
+            )
+        if problem != told:
+            told = problem
+            print(f'waiting for {client.url} ({told}) until it is there', flush=True)
 
 
 def _with_token(url: str, token: str) -> str:

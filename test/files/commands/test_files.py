@@ -251,3 +251,35 @@ def test_where_nothing_can_be_written_is_said_before_any_work(
 def test_a_name_without_a_suffix_is_called_so(tmp_path, capsys):
     assert cli.main(['convert', 'goldcrest', '-o', str(tmp_path / 'tree')]) == 2
     assert 'a name without a suffix; use .yaml' in capsys.readouterr().err
+
+
+def test_the_speed_of_a_wind_is_that_of_the_animation(tmp_path: Path) -> None:
+    moved = []
+    for speed in ([], ['--speed', '6'], ['--speed', '12']):
+        glb, usda = (tmp_path / f'{len(moved)}{suffix}' for suffix in ('.glb', '.usda'))
+        for path in (glb, usda):
+            assert cli.main(['convert', SEEDLING, *speed, '-o', str(path)]) == 0
+        moved.append((glb.read_bytes(), usda.read_text().partition('def Scope')[0]))
+    assert moved[0] == moved[1]
+    assert moved[0][0] != moved[2][0]
+    assert moved[0][1] != moved[2][1]
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'told'),
+    [
+        (['-o', 'a.glb'], 'leaves on, 20 s of wind'),
+        (['-o', 'a.usdz', '--leaves', 'off'], 'leaves off, 10 s of wind'),
+        (['-o', 'a.glb', '--sway', 'skin'], 'leaves on'),
+        (['-o', 'a.yaml'], ''),
+    ],
+)
+def test_what_is_in_a_file_is_told_in_a_line(
+    arguments: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(['convert', SEEDLING, *arguments]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    size = f'{Path(arguments[1]).stat().st_size / 1e6:.2g} MB'
+    assert line.endswith('; ' + ', '.join(filter(None, (size, told))))

@@ -26,6 +26,17 @@ OPTION = ('--wind-option', 'rate=20')
         ('render', (*WIND, *SPEED), 'both --wind and --speed'),
         ('convert', WIND, '--wind: it would change nothing; add --at SECONDS'),
         ('convert', SPEED, '--speed: it would change nothing; add --at SECONDS'),
+        (
+            'convert',
+            (*SPEED, '-o', 'bare.xml'),
+            '--speed: it would change nothing; add --at SECONDS',
+        ),
+        (
+            'convert',
+            (*WIND, '-o', 'gust.glb'),
+            '--wind: it would change nothing; add --at SECONDS',
+        ),
+        ('convert', (*SPEED, '--sway', 'skin', '-o', 'joints.glb'), '--speed: it would change'),
         ('convert', (*WIND, *SPEED, '--at', '3'), 'both --wind and --speed'),
         ('simulate', ('--seconds', '1e6'), '1e+06 s at 60 Hz are 6e+07 steps; give at most'),
     ],
@@ -34,7 +45,9 @@ def test_what_would_be_ignored_is_refused(command, options, words, tmp_path, cap
     installed(command)
     suffix = {'convert': '.obj', 'plot': '.png', 'render': '.gif', 'simulate': '.csv'}[command]
     output = tmp_path / f'out{suffix}'
-    assert main([command, 'goldcrest', *options, '-o', str(output)]) == 2
+    if '-o' not in options:
+        options = (*options, '-o', str(output))
+    assert main([command, 'goldcrest', *options]) == 2
     assert words in capsys.readouterr().err
     assert not output.exists()
 

@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import argparse
+import itertools
+import math
 from pathlib import Path
 from queue import Queue
 from typing import Any
@@ -15,6 +17,7 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 
 from geometry_msgs.msg import Pose, PoseArray  # noqa: E402, I100
 
+from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.errors import TransportError  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway_ros.commands.bag_recorder import record_bag, Recorder  # noqa: E402
@@ -62,6 +65,22 @@ def test_a_listener_says_that_it_waits_for_poses(context: object, reported: Queu
         pytest.raises(TransportError, match='no poses within 0'),
     ):
         watch(monitor, 1.0, lambda: bool(reported.get(timeout=DEADLINE)), patience=0.0)
+
+
+@pytest.mark.parametrize(('seconds', 'within'), [(0.5, 2), (4.0, 4), (math.inf, 30)])
+def test_a_listener_without_a_solver_ends_with_its_time(
+    context: object, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+    seconds: float, within: float,
+) -> None:  # fmt: skip
+    clock = itertools.count()
+    with StreamMonitor(context, None, 'nobody') as monitor:
+        monkeypatch.setattr(monitor, 'spin', lambda _: None)
+        monkeypatch.setattr('tree_sway_ros.commands.listen.StreamMonitor', lambda *_: monitor)
+        monkeypatch.setattr('tree_sway_ros.commands.watch.time.monotonic', lambda: next(clock))
+        arguments = [] if seconds == math.inf else ['--seconds', str(seconds)]
+        assert main(['listen', *arguments]) == 2
+    assert f'no poses within {within} s' in capsys.readouterr().err
+    assert next(clock) <= within + 3
 
 
 def test_a_recorder_says_that_it_waits_for_a_tree_and_what_did_not_come(

@@ -33,8 +33,10 @@ from tree_sway.files.commands.wind_arguments import (
     add_wind_arguments,
     opened_wind,
     refuse_unused_wind,
+    simulated_speed,
 )
 from tree_sway.files.export import mjcf_of_tree, morphing_tree, write_tree
+from tree_sway.files.export.breeze import SECONDS
 from tree_sway.files.export.hinged_tree_writing import sdf_of_tree
 from tree_sway.files.export.obj_scene import ObjScene
 from tree_sway.files.export.tree_export import SUFFIXES, write_gltf
@@ -83,8 +85,6 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.at is not None and suffix != '.obj':
         raise ParameterError(f"'{output}' is of no moment", where='--at', cure='write .obj files')
     refuse_unused_wind(arguments)
-    if arguments.at is None and (arguments.wind is not None or arguments.speed is not None):
-        refuse_unused('--speed' if arguments.wind is None else '--wind', '--at SECONDS')
     if arguments.sway is not None and suffix != '.glb':
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
     if arguments.leaves is None:
@@ -93,15 +93,22 @@ def run(arguments: argparse.Namespace) -> int:
     count = max(1, len(moments))
     paths = numbered_paths(output, count, may_overwrite=suffix != '.obj' or arguments.force)
     scene = opened_scene(arguments)
+    # A single tree has a breeze and weights in a .glb, unless a skin is asked for.
+    way = arguments.sway or ('morph' if scene.is_one_tree else 'skin')
+    sways = suffix in _USD or (suffix == '.glb' and way != 'skin')
+    if arguments.at is None:
+        needs = '--at SECONDS, for .obj files'
+        if arguments.wind is not None:
+            refuse_unused('--wind', needs)
+        if arguments.speed is not None and not sways:
+            refuse_unused('--speed', needs)
     for note in scene.notes:
         say(note)
     if suffix == '.obj':
         _write_moments(scene, arguments, moments, paths)
     elif suffix == '.html':
         _write_page(scene, arguments)
-    elif suffix in (*_USD, *_HINGED, *_PREPARED) or (
-        suffix == '.glb' and _is_to_sway(scene, arguments)
-    ):
+    elif sways or suffix in (*_HINGED, *_PREPARED):
         _write_swaying(scene, arguments, suffix)
     elif suffix != '.glb' and scene.is_one_tree:
         one = scene.trees[0]
@@ -110,7 +117,12 @@ def run(arguments: argparse.Namespace) -> int:
         leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
         write_tree(output, scene.tree, leaves=leaves)
     written = f'{paths[0]} to {paths[-1].name}, {count} moments' if count > 1 else paths[0]
-    print(what_was_written(str(written), scene.tree))
+    told = f'{sum(path.stat().st_size for path in paths) / 1e6:.2g} MB'
+    if suffix in _DRAWN:
+        told += f', leaves {arguments.leaves}'
+    if sways:
+        told += f', {SECONDS[suffix]:g} s of wind'
+    print(f'{what_was_written(str(written), scene.tree)}; {told}')
     return 0
 
 
@@ -168,18 +180,16 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             model = prepare(scene.tree, scene.species, solved(settings))
         _PREPARED[suffix](arguments.output, model)
         return
+    speed = simulated_speed(arguments)
     with waiting('finding what sways'):
         simulator = make_simulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)
         if suffix == '.glb':
             small = arguments.sway != 'floats'
-            write_gltf(arguments.output, morphing_tree(simulator, leaves, small=small))
+            write_gltf(
+                arguments.output, morphing_tree(simulator, leaves, small=small, speed=speed)
+            )
         elif suffix in _USD:
-            write_usd(arguments.output, simulator, leaves)
+            write_usd(arguments.output, simulator, leaves, speed)
         else:
             write_text_whole(arguments.output, _HINGED[suffix](simulator))
-
-
-def _is_to_sway(scene: Scene, arguments: argparse.Namespace) -> bool:
-    """Whether a .glb has a breeze and weights: a single tree, unless a skin is asked for."""
-    return arguments.sway in ('morph', 'floats') or (arguments.sway is None and scene.is_one_tree)

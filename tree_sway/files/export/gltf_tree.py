@@ -24,7 +24,7 @@ from tree_sway.core.model import MARGIN, StateBasis
 from tree_sway.core.run import basis_of, SwaySimulator
 from tree_sway.core.tree import Tree
 from tree_sway.errors import FormatError
-from tree_sway.files.export.breeze import in_breeze, RATE
+from tree_sway.files.export.breeze import in_breeze, RATE, SECONDS, SPEED
 from tree_sway.files.export.gltf_document import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, GltfDocument
 from tree_sway.files.export.tree_mesh import matrices_of
 from tree_sway.files.export.tree_parts import parts_of, TreePart
@@ -36,7 +36,6 @@ _SWING = 0.5
 Share of a coordinate's unit at which the slope of a target is computed: between a breeze and a
 storm.
 """
-_SECONDS = 20.0
 _CUTOFF = 0.2
 """
 Least alpha of a picture of leaves that is drawn: less than a small picture has on the average, so
@@ -92,7 +91,11 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
 
 
 def morphing_tree(
-    simulator: SwaySimulator, leaves: LeafClusters | None = None, *, small: bool = True
+    simulator: SwaySimulator,
+    leaves: LeafClusters | None = None,
+    *,
+    small: bool = True,
+    speed: float = SPEED,
 ) -> GltfDocument:
     """
     Return a tree on any model of a simulator as a mesh with a morph target per coordinate.
@@ -101,7 +104,7 @@ def morphing_tree(
     the basis and the amplitude of the coordinate in a ``storm``. The node scales the targets: a
     weight of 1 moves some vertex by a tenth of the width of the tree. They are integers in a
     ``small`` document (KHR_mesh_quantization, which Godot does not read), for which the vertices
-    of a ring of wood move together. An animation shows a breeze.
+    of a ring of wood move together. An animation shows a breeze of a mean speed [m/s].
     """
     tree = simulator.tree
     basis = basis_of(simulator)
@@ -149,7 +152,10 @@ def morphing_tree(
         quantised = ['KHR_mesh_quantization']
         document.set(extensionsUsed=quantised, extensionsRequired=quantised)
     weights = in_breeze(
-        simulator, _SECONDS, lambda: basis.coordinates(simulator.rotations()) / unit
+        simulator,
+        SECONDS['.glb'],
+        lambda: basis.coordinates(simulator.rotations()) / unit,
+        speed,
     )
     _add_animation(document, shown, np.array(weights))
     return document

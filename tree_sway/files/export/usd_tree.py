@@ -20,12 +20,11 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.run import SwaySimulator
 from tree_sway.core.tree import Tree
-from tree_sway.files.export.breeze import in_breeze, RATE
+from tree_sway.files.export.breeze import in_breeze, RATE, SECONDS, SPEED
 from tree_sway.files.export.hinged_tree import plain_name, plain_names, poses_on_parents
 from tree_sway.files.export.tree_mesh import matrices_of
 from tree_sway.files.export.tree_parts import parts_of, TreePart
 
-_SECONDS = 10.0
 _STEADY = 8.0
 _SETTLED = 30.0
 _MAX_GROUPS = 4
@@ -33,16 +32,26 @@ _SHOOTS = 4
 """Shoots per cluster of leaves."""
 
 
-def usd_of_tree(simulator: SwaySimulator, leaves: LeafClusters | None, pictures: str = '') -> str:
+def usd_of_tree(
+    simulator: SwaySimulator,
+    leaves: LeafClusters | None,
+    pictures: str = '',
+    speed: float = SPEED,
+) -> str:
     """
-    Return the tree of a simulator as ``.usda``, with or without leaves.
+    Return the tree of a simulator as ``.usda``, with or without leaves, in a mean wind [m/s].
 
     The files of its pictures are beside it, named ``bark.png`` and ``leaves.png`` behind what
     those of ``pictures`` begin with.
     The simulator is run, and then set back to the state that it was in.
     """
     tree = simulator.tree
-    frames = in_breeze(simulator, _SECONDS, lambda: poses_on_parents(tree, simulator.place()))
+    frames = in_breeze(
+        simulator,
+        SECONDS['.usda'],
+        lambda: poses_on_parents(tree, simulator.place()),
+        speed,
+    )
     rest = tree.rest_poses
     name = plain_name(tree.name)
     parts = parts_of(tree, leaves, _SHOOTS)

@@ -19,6 +19,7 @@ from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.run import SwaySimulator
 from tree_sway.core.species import look_of
 from tree_sway.files.atomic_file import whole_file
+from tree_sway.files.export.breeze import SPEED
 from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
 from tree_sway.files.export.usd_tree import usd_of_tree
 
@@ -28,7 +29,10 @@ _PADDING_ID = 0x1986
 
 
 def write_usd(
-    path: str | Path, simulator: SwaySimulator, leaves: LeafClusters | None = None
+    path: str | Path,
+    simulator: SwaySimulator,
+    leaves: LeafClusters | None = None,
+    speed: float = SPEED,
 ) -> None:
     """Write ``.usda`` with its pictures beside it, or ``.usdz``; see `usd_of_tree`."""
     path = Path(path)
@@ -37,7 +41,7 @@ def write_usd(
     pictures = {f'{stem}_bark.png': bark_picture(look_of(species).bark_pattern)}
     if leaves is not None:
         pictures[f'{stem}_leaves.png'] = leaf_picture(species)
-    text = usd_of_tree(simulator, leaves, f'{stem}_')
+    text = usd_of_tree(simulator, leaves, f'{stem}_', speed)
     if path.suffix.lower() == '.usdz':
         with whole_file(path) as partial:
             partial.write_bytes(_packed({**_layer(stem, text), **pictures}))
