@@ -11,7 +11,7 @@ a text ``above`` its header.
 
 A line above the header may tell a scale by a form of `scales.csv`: the size of 1 in a column of
 its ``quantity`` in its ``unit``, or with the ``power`` -1 how many are one unit. A ``count of``
-one is a whole number.
+one is a whole number. Words in capitals stand for the expressions of `_WORDS`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,20 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.tables import table_beside
 
 _MAKERS = table_beside(__file__, 'makers.csv')
-_SCALES = table_beside(__file__, 'scales.csv')
+_WORDS = {
+    ' EQUALS ': r'[)\]"]{0,2}\s?[:=,;\t]\s?"?',
+    ' PER ': ' ?(?:/|per) ?',
+    'COUNT': '(?:lsb|counts?|digits?|bits?)',
+    'NUMBER': (
+        r'(?<![\d.])((?=[0.][0.,]{0,18}[1-9]|[1-9])'  # above 0
+        r'\d{0,9}[.,]?\d{1,18}(?:e-?\d{1,2})?)(?!\.?\d)'
+    ),
+}
+_ANY_WORD = re.compile('|'.join(_WORDS))
+_SCALES = [
+    (re.compile(_ANY_WORD.sub(lambda word: _WORDS[word[0]], each['form']), re.IGNORECASE), each)
+    for each in table_beside(__file__, 'scales.csv')
+]
 
 
 def maker_of(table: TextTable) -> dict[str, Any]:
@@ -37,8 +50,8 @@ def maker_of(table: TextTable) -> dict[str, Any]:
     last = {folded(column.rpartition('.')[2]) for column in table.columns}  # of a name in groups
     above = '\n'.join(table.above)
     scales = dict[str, str]()
-    for each in _SCALES:
-        if told := re.search(each['form'], above):
+    for form, each in _SCALES:
+        if told := form.search(above):
             size = float(told[1].replace(',', '.')) ** each['power']
             scales[each['quantity']] = f'{size:.9g} {each["unit"]}'
     for maker in _MAKERS:

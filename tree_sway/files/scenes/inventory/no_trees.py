@@ -5,7 +5,7 @@ What cells say in place of a species or of a living tree: dead, a stump, an empt
 
 ``no_trees.csv`` has the words of public inventories in a dozen languages, a star for any letters:
 the values of Lyon, Vienna, Camden, Arganda del Rey and the sources of OpenTrees, of i-Tree and of
-BS 5837:2012, and what they are in other languages.
+BS 5837:2012. Those of other languages are translations of these.
 """
 
 from __future__ import annotations
