@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.kinds import kind_of
 from tree_sway.files.layouts.known import table_of
 from tree_sway.files.motion import read_motion, read_strain
 from tree_sway.files.scenes import Inventory, inventory_of, inventory_table
@@ -618,3 +619,27 @@ def test_units_of_settings_in_german_and_labels_in_braces(tmp_path: Path) -> Non
     rows = ''.join(f'2026-03-05 14:{n}0:00,10,270\n' for n in range(5))
     record = read_wind(written(tmp_path, head + rows), turbulence=False)
     np.testing.assert_allclose(record.velocity[:, 0], 10 * 1852 / 3600)
+
+
+@pytest.mark.parametrize(('beside', 'to_east'), [('110', -4.0), ('290', 4.0), ('20', 4.0)])
+def test_components_are_turned_about_by_the_direction_beside_them(tmp_path, beside, to_east):
+    rows = '\n'.join(f'{second},4.0,-1.46,{beside}' for second in range(20))
+    path = tmp_path / 'sonic.csv'
+    path.write_text(f'time,u_m_s,v_m_s,azimuth_deg\n{rows}\n', encoding='utf-8')
+    record = read_wind(path)
+    assert record.velocity[0, 0] == pytest.approx(to_east)
+    assert any('comes from' in note for note in record.notes) == (to_east < 0.0)
+
+
+def test_hours_are_told_by_the_names_above_names(tmp_path):
+    rows = '\n'.join(f'"{hour:02d}","3.{hour % 10}","{10 * hour}"' for hour in range(1, 13))
+    names = '"時間(hour)","風速(m/s)","風向(360degree)"\n"ObsTime","WS","WD"'
+    path = tmp_path / 'station.csv'
+    path.write_text(f'{names}\n{rows}\n', encoding='utf-8')
+    assert read_wind(path, turbulence=False).period == 3600.0
+
+
+def test_a_wind_with_numbered_codes_beside_it_is_no_motion(tmp_path):
+    path = tmp_path / 'codes.csv'
+    path.write_text('time,ff,dd,w1,w2\n2024-01-01 00:00,3,270,1,2\n', encoding='utf-8')
+    assert kind_of(path) == 'wind'

@@ -98,12 +98,19 @@ _IN = re.compile(r'^(in|en)(?=\w)')
 """Word between a name and its unit."""
 
 
-@lru_cache(8192)
 def folded(text: str) -> str:
     """Letters and digits of a text in lower case, without accents, umlauts as ae, oe and ue."""
+    return (_letters if len(text) > _ENDLESS else _letters_of_name)(text)
+
+
+def _letters(text: str) -> str:
     lower = unicodedata.normalize('NFC', text).lower().translate(_UMLAUTS)
     plain = unicodedata.normalize('NFKD', lower)
     return ''.join(letter for letter in plain if letter.isalnum())
+
+
+_letters_of_name = lru_cache(8192)(_letters)
+"""The same, kept: a file asks for the names of its columns again and again."""
 
 
 def _folded_unit(text: str) -> str:

@@ -79,7 +79,8 @@ def _kind_of_table(head: str) -> str:
         if not table.find_all('time'):
             return ''
         moved = {found[0] for found in map(motion_of, table.columns) if found and found[2]}
-        if moved - {'displacement'}:  # as ux of a wind is one
+        is_wind = table.find_all('wind_speed') and table.find_all('wind_direction')
+        if moved - {'displacement'} and not is_wind:  # as ux of a wind is one
             return 'motion'
         components = {folded(table.columns[index]) for index in table.find_all('wind_x')}
         if table.find_all('wind_speed') or components - {'x', 'east'}:

@@ -32,6 +32,7 @@ def read_spreadsheet(path: Path) -> TextTable:
     """
     Return the rows below the header, which names most columns of an inventory of all sheets.
 
+    A column that has no name there has the one above it, as cells of two rows are joined.
     Raises a `FormatError` for a broken file or no such sheet, and a `MissingDependencyError`
     without openpyxl.
     """
@@ -46,7 +47,9 @@ def read_spreadsheet(path: Path) -> TextTable:
     # A title, or a sheet of other things, may stand above: the header names species or sizes.
     rows, number = max(tables, key=lambda table: sum(map(is_known, table[0][table[1]])))
     below = {n: row for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)}
-    table = table_of_cells(rows[number], below.values(), str(path), [*below])
+    above = rows[number - 1] if number else []
+    names = [name or over for name, over in zip_longest(rows[number], above, fillvalue='')]
+    table = table_of_cells(names, below.values(), str(path), [*below])
     return replace(table, header_line=number + 1)
 
 

@@ -245,3 +245,14 @@ def test_a_log_of_other_rows_is_refused_by_cause(
     with pytest.raises(FormatError, match=what) as caught:
         read(written(tmp_path, text))
     assert cure.replace('\\', '') in caught.value.cure
+
+
+def test_the_unit_of_a_rate_is_told_by_its_range_above(tmp_path):
+    path = tmp_path / 'box.csv'
+    rows = '\n'.join(f'{0.02 * n:.2f},0,0,9.81,90,0,0' for n in range(40))
+    head = '# gyro_range = 250.0 dps, acc_range = 4 g'
+    path.write_text(f'{head}\ntime [s],ax,ay,az,gx,gy,gz\n{rows}\n', encoding='utf-8')
+    record = read_motion(path)
+    assert record.rate is not None
+    assert record.rate[0, 0] == pytest.approx(np.pi / 2.0)
+    assert 'gx is in dps, as of the lines above' in record.notes

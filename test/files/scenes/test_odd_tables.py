@@ -84,3 +84,9 @@ def test_rows_without_trees_are_passed_over(
     rows = (above, HEADER, OAK, [], BIRCH, [None] * 6, SPRUCE, [])
     scene = open_scene(book(tmp_path / 'trees.xlsx', *rows, merged=merged))
     assert heights(scene) == [12.0, 10.0, 15.0]
+
+
+def test_a_column_without_a_name_has_the_one_above_it(tmp_path: Path) -> None:
+    heads = ('Tree no', 'Tree', 'Size', None, None, None), (None, *HEADER[1:])
+    scene = open_scene(book(tmp_path / 'trees.xlsx', *heads, ('A1', *OAK[1:]), ('A2', *BIRCH[1:])))
+    assert [each.name for each in scene.trees] == ['A1', 'A2']

@@ -210,7 +210,7 @@ def _unit_below(cell: str) -> str:
     name, unit = name_and_unit(cell, 'speed')
     if any(unit_known(kind, cell) for kind in _KINDS) or (name == cell and not unit):
         return cell.strip('[]')
-    return unit if any(unit_known(kind, unit) for kind in ('angle', *_KINDS)) else ''
+    return unit if any(unit_known(kind, unit) for kind in ('angle', 'time', *_KINDS)) else ''
 
 
 PLAIN = Layout(_is_table, _read)

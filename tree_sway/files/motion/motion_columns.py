@@ -112,7 +112,7 @@ def in_si(
     name, maker = table.columns[columns[0]], maker_of(table)
     is_count = (values[np.isfinite(values)] % 1.0 == 0.0).all()
     counts = maker.get(f'count of {quantity}') if is_count else None
-    if known := counts or maker.get(quantity):
+    if known := counts or maker.get(quantity) or _rate_above(table, quantity):
         said = f'{name} is in {known}, as of {maker.get("maker", "the lines above")}'
         return values * table.known_factor(quantity, known), said
     for told in gravity_in(values) if quantity == 'acceleration' else ():
@@ -135,6 +135,13 @@ def in_si(
         )
     note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'
     return values, note
+
+
+def _rate_above(table: TextTable, quantity: str) -> str:
+    """Return the unit of an angular rate that the lines above tell, as of its range."""
+    words = ' '.join(table.above).split() if quantity == 'rate' else ()
+    found = {word for each in words if unit_known('rate', word := each.strip('()[],;'))}
+    return found.pop() if len(found) == 1 else ''
 
 
 def sample_times(table: TextTable, times: Times, column: int | None) -> Times:

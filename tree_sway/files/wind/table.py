@@ -40,6 +40,8 @@ from tree_sway.files.wind.station_means import filled_means
 from tree_sway.files.zipped import table_in
 
 _COMPONENTS = ('wind_x', 'wind_y', 'wind_z')
+_BACK = 0.9
+"""Least share of a wind that is along where it comes from, of components that tell this."""
 _HEIGHT = re.compile(
     r'(?:^|(?<=[ _@]))\W?(?:at? )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))|'
     r'(?<=[a-z])(\d+)m[NESW]{0,2}(?=$| ?[\[(])'
@@ -90,7 +92,9 @@ def read_table_wind(
         components = [Column(at, factor) for at, (factor, _) in zip(places, told, strict=True)]
         notes = [at_height, told[0][1], _repeated(table, components[0], 'wind_x')]
         winds = winds_of_components(table, components, rows)
-        convention = direction_convention or 'to'
+        back = '' if direction_convention else _points_back(table, time[0], winds)
+        notes.append(back)
+        convention = direction_convention or ('from' if back else 'to')
     else:
         found = table.find('wind_speed')
         taken = list(time[0]) if time else []  # of which DD is a day and no direction
@@ -167,6 +171,19 @@ def _direction(
             factor = table.known_factor('angle', unit or 'deg')
             return Column(place, factor), 'to' if quantity == 'wind_to' else 'from'
     return given, 'from'
+
+
+def _points_back(table: TextTable, taken: Sequence[int], winds: Floats) -> str:
+    """Return a note on components to where the wind comes from, by the direction beside them."""
+    told = (*table.find_all('wind_direction'), *table.find_all('azimuth'))
+    for place in [each for each in told if each not in taken][:1]:
+        factor = table.known_factor('angle', table.unit_of(place, 'wind_direction') or 'deg')
+        angle = table.values([place])[:, 0] * factor
+        along = winds[:, 0] * np.sin(angle) + winds[:, 1] * np.cos(angle)
+        known = np.isfinite(along)
+        if along[known].sum() > _BACK * np.hypot(*winds[known, :2].T).sum() > 0.0:
+            return f'by {table.columns[place]} the components tell where the wind comes from'
+    return ''
 
 
 def _repeated(table: TextTable, used: Column, quantity: str) -> str:
