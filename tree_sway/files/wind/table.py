@@ -167,18 +167,21 @@ def _direction(
     quantity = 'wind_direction' if table.find_all('wind_direction') else 'wind_to'
     for place in table.find_all(quantity):
         if place not in taken:
-            unit = table.unit_of(place, 'wind_direction') or maker_of(table).get('direction')
-            factor = table.known_factor('angle', unit or 'deg')
-            return Column(place, factor), 'to' if quantity == 'wind_to' else 'from'
+            return _angle_in(table, place), 'to' if quantity == 'wind_to' else 'from'
     return given, 'from'
+
+
+def _angle_in(table: TextTable, place: int) -> Column:
+    """Return a column of angles with the factor of its unit, which is degrees if nothing tells."""
+    unit = table.unit_of(place, 'wind_direction') or maker_of(table).get('direction')
+    return Column(place, table.known_factor('angle', unit or 'deg'))
 
 
 def _points_back(table: TextTable, taken: Sequence[int], winds: Floats) -> str:
     """Return a note on components to where the wind comes from, by the direction beside them."""
     told = (*table.find_all('wind_direction'), *table.find_all('azimuth'))
     for place in [each for each in told if each not in taken][:1]:
-        factor = table.known_factor('angle', table.unit_of(place, 'wind_direction') or 'deg')
-        angle = table.values([place])[:, 0] * factor
+        angle = table.values([place])[:, 0] * _angle_in(table, place).factor
         along = winds[:, 0] * np.sin(angle) + winds[:, 1] * np.cos(angle)
         known = np.isfinite(along)
         if along[known].sum() > _BACK * np.hypot(*winds[known, :2].T).sum() > 0.0:
