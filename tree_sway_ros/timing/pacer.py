@@ -188,9 +188,11 @@ class Pacer(Worker):
             longest = round(self.clock_rate.largest_factor * (LONGEST_STEP + since))
         most = max(1, longest // self.period)
         if not self.is_simulated:
-            # Periods are skipped by elapsed time, not by a wall clock that was set forward.
-            self._skipped += min(periods, max(1, round(passed / self.period))) - 1
-            self._clamped += periods * self.period > passed + LONGEST_STEP
+            # What a wall clock that was set forward adds is not skipped. The two clocks are read one
+            # after the other, so that they differ by what came between.
+            jumped = periods * self.period > passed + LONGEST_STEP
+            self._skipped += (max(1, round(passed / self.period)) if jumped else periods) - 1
+            self._clamped += jumped
         elif periods > most:
             self._clamped += 1
         return Tick(index * self.period, min(periods, most), False)

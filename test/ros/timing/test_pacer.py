@@ -257,6 +257,15 @@ def test_a_wall_clock_set_forward_skips_nothing(monkeypatch):
     assert (paced.timing().skipped, paced.timing().clamped) == (0, 1)
 
 
+def test_an_interruption_between_the_readings_of_two_clocks_loses_no_frame(monkeypatch):
+    """The steady clock is read 4 ms after the wall's at one tick, and at once at the next."""
+    wall = Wall(monkeypatch)
+    paced = Pacer(wall, 200.0, print, print)
+    paced._due(wall.go(0.004, wall=0.0))
+    assert paced._due(wall.go(0.006, wall=0.01)).periods == 2
+    assert (paced.timing().skipped, paced.timing().clamped) == (1, 0)
+
+
 def test_stopping_twice_or_before_the_start_is_harmless(ticks):
     paced = ticks()
     paced.pacer.stop()
