@@ -19,7 +19,7 @@ from tree_sway.files.layouts.known import table_of
 from tree_sway.files.motion import read_motion, read_strain
 from tree_sway.files.scenes import Inventory, inventory_of, inventory_table
 from tree_sway.files.text_file import read_head
-from tree_sway.files.trees import open_tree
+from tree_sway.files.trees import open_scene, open_tree
 from tree_sway.files.wind import read_csv_sway, read_wind
 from tree_sway.files.wind.sensor_line import checksum_of
 
@@ -217,6 +217,8 @@ def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
         ('a.csv', '--- Data Table File Created By ActiGraph ---\n', 'counts of an activity'),
         ('a.txt', 'wx,at=roof speed=4.0,dir=250 1709647200000000000\nwx,at=a', 'of InfluxDB'),
         ('log.csv', '!Boat,Utc,TWS\n!boat,0,5\n0,45858.5,5,12.1\n', 'pairs of the number'),
+        ('a.log', 'FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n', 'of ArduPilot'),
+        ('take.csv', 'Format Version,1.23,Take Name,pull\n', 'a take of OptiTrack Motive'),
         ('a.mnd', 'FORMAT-1\n2024-03-05 00:00:00 0\nSFAS\n', 'profiles of a sodar in blocks'),
     ],
 )
@@ -643,3 +645,51 @@ def test_a_wind_with_numbered_codes_beside_it_is_no_motion(tmp_path):
     path = tmp_path / 'codes.csv'
     path.write_text('time,ff,dd,w1,w2\n2024-01-01 00:00,3,270,1,2\n', encoding='utf-8')
     assert kind_of(path) == 'wind'
+
+
+def test_two_columns_of_one_name_are_not_the_first(tmp_path: Path) -> None:
+    rows = ''.join(f'{0.02 * n:.2f},0,0,0.05,790,2330,-143\n' for n in range(9))
+    path = written(tmp_path, f'time [s],X,Y,Z,X,Y,Z\n{rows}')
+    for read in (read_csv_sway, read_motion):
+        with pytest.raises(FormatError, match="several columns are called 'X'"):
+            read(path)
+
+
+def test_codes_of_a_service_name_quantities(tmp_path: Path) -> None:
+    codes = {'30': '4.0', '31': '270', '32': '18.5', '50': '7.2'}
+    rows = [
+        {
+            'codi_variable': code,
+            'data_lectura': f'2026-02-01T09:{half}0:00',
+            'valor_lectura': value,
+        }
+        for half in (0, 3)
+        for code, value in codes.items()
+    ]
+    record = read_wind(written(tmp_path, dumps(rows), 'a.json'), turbulence=False)
+    np.testing.assert_allclose(record.velocity, [[4.0, 0.0, 0.0]] * 2, atol=1e-9)
+    assert record.gust is not None
+    assert record.gust.tolist() == [7.2] * 2
+
+
+def test_a_zip_has_a_tree_in_each_file(tmp_path: Path) -> None:
+    path = tmp_path / 'trees.zip'
+    with ZipFile(path, 'w') as archive:
+        for number, state in enumerate(('alive', 'dead', 'alive')):
+            measured = [{'DBH_cm': 30.0, 'height_m': None, 'state': state}, {'height_m': 20.0}]
+            place = {'type': 'Point', 'coordinates': [8.7 + 1e-4 * number, 49.0]}
+            own = {'id': f't{number}', 'species': 'Fagus sylvatica', 'measurements': measured}
+            tree = {'type': 'Feature', 'properties': own, 'geometry': place}
+            archive.writestr(f't{number}.geojson', dumps(tree))
+    scene = open_scene(path, warn=False)
+    assert [each.name for each in scene.trees] == ['t0', 't2']
+    assert scene.trees[0].scale * scene.trees[0].tree.height == pytest.approx(20.0)
+    assert any('1 dead or gone' in note for note in scene.notes)
+
+
+def test_a_zip_without_a_table_names_what_is_in_it(tmp_path: Path) -> None:
+    path = tmp_path / 'export.zip'
+    with ZipFile(path, 'w') as archive:
+        archive.writestr('apple_health_export/export.xml', '<HealthData/>')
+    with pytest.raises(FormatError, match='0 of them tables: apple_health_export/'):
+        read_motion(path)

@@ -183,3 +183,72 @@ def test_a_quote_that_is_open_to_the_end_leaves_no_rows():
     lines = ['"time,u,v', '0,1,2"']
     with pytest.raises(FormatError, match='a quote is open from the header to the end'):
         parse_table(lines, 'a.csv')
+
+
+HOURS = '2024-07-15 00:00,3.1,220\n2024-07-15 01:00,3.2,220\n2024-07-15 02:00,3.3,220\n'
+SPEEDS = 'wind speed (m/s),wind dir (deg)\n'
+
+
+@pytest.mark.parametrize(
+    ('above', 'clock', 'ahead'),
+    [
+        ('', 'Timestamp (UTC-05:00)', -5.0),
+        ('', '"Date Time, GMT+05:30"', 5.5),
+        ('', 'time (Europe/Berlin)', 2.0),
+        ('', 'Date-Time (EDT)', -4.0),
+        ('', 'Timestamp (UTC)', 0.0),
+        ('', 'time', 0.0),
+        ('Station: West\nTime zone: UTC+2\n', 'time', 2.0),
+        ('Station: West\nTimezone: CEST\n', 'time', 2.0),
+        (
+            'utc_offset_seconds,timezone\n7200,Africa/Cairo\n\n',
+            'time',
+            3.0,
+        ),
+        ('utc_offset_seconds: -12600\n', 'time', -3.5),
+        ('Utc offset: +0930\n', 'time', 9.5),
+        ('Time zone: 47\n', 'time', 0.0),
+        ('POSIX name: Etc/GMT+5\n', 'time', 0.0),
+    ],
+)
+def test_a_zone_that_a_table_tells_counts(
+    tmp_path: Path, above: str, clock: str, ahead: float
+) -> None:
+    path = tmp_path / 'wind.csv'
+    path.write_text(f'{above}{clock},{SPEEDS}{HOURS}', encoding='utf-8')
+    record = read_wind(path, turbulence=False)
+    assert record.epoch == np.datetime64('2024-07-15').astype('datetime64[s]').astype(int) - (
+        3600.0 * ahead
+    )
+    assert any('on the clock of' in note for note in record.notes) == (ahead != 0.0)
+
+
+@pytest.mark.parametrize('zone', ['+02:00', '7200', 'Europe/Berlin', 'CEST', '2'])
+def test_a_column_of_zones_counts(tmp_path: Path, zone: str) -> None:
+    rows = ''.join(f'2024-07-15 0{n}:00,{zone},3.{n},220\n' for n in range(3))
+    path = tmp_path / 'wind.csv'
+    path.write_text(f'time,timezone,{SPEEDS}{rows}', encoding='utf-8')
+    record = read_wind(path, turbulence=False)
+    assert record.epoch == 1720994400.0
+
+
+@pytest.mark.parametrize('own', ['Z', '+00:00'])
+def test_times_with_a_zone_keep_it(tmp_path: Path, own: str) -> None:
+    hours = [f'2024-07-15T0{n}:00:00{own}' for n in range(3)]
+    told = {'utc_offset_seconds': 7200, 'timezone': 'Europe/Berlin'}
+    speeds = {'wind_speed': [3.1] * 3, 'wind_direction': [220] * 3}
+    path = tmp_path / 'wind.json'
+    for times in (hours, [1721001600 + 3600 * n for n in range(3)]):
+        path.write_text(json.dumps(told | {'hourly': {'time': times} | speeds}), encoding='utf-8')
+        assert read_wind(path, turbulence=False).epoch == 1721001600.0
+    local = [each.removesuffix(own) for each in hours]
+    path.write_text(json.dumps(told | {'hourly': {'time': local} | speeds}), encoding='utf-8')
+    assert read_wind(path, turbulence=False).epoch == 1721001600.0 - 7200.0
+
+
+def test_a_zone_that_is_not_known_is_said(tmp_path: Path) -> None:
+    path = tmp_path / 'wind.csv'
+    path.write_text(f'time (Europe/Atlantis),{SPEEDS}{HOURS}', encoding='utf-8')
+    record = read_wind(path, turbulence=False)
+    assert record.epoch == 1721001600.0
+    assert any('zone Europe/Atlantis is not known here' in note for note in record.notes)

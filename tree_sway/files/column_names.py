@@ -51,6 +51,12 @@ COMPASS: dict[str, str] = _KNOWN['compass']
 TIME_PARTS: dict[str, str] = _KNOWN['time_parts']
 """Columns that make a time together, and how."""
 
+CODES: dict[str, dict[str, str]] = _KNOWN['codes']
+"""Columns of codes, and the quantities of the wind among them."""
+
+ZONES: dict[str, float] = _KNOWN['zones']
+"""Letters of zones of time, and the hours that each is ahead of UTC."""
+
 HEADER: list[str] = _KNOWN['header']
 """Quantities whose names tell the header of a table."""
 

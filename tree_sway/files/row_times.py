@@ -5,9 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from datetime import datetime, timedelta
 import re
-from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
@@ -15,7 +13,8 @@ from tree_sway.files.column_names import folded, is_named, name_and_unit, TIME_P
 from tree_sway.files.makers import maker_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import finite
-from tree_sway.files.time_stamps import dates, TIME_OF_DAY, Times, times_of, unwrapped
+from tree_sway.files.time_stamps import dates, lacks_zone, TIME_OF_DAY, Times, times_of, unwrapped
+from tree_sway.files.time_zone import in_utc
 
 PARTS = {tuple(names.split()): form for names, form in TIME_PARTS.items()}
 """Columns that make a time together, and the form of a date or of seconds with all of them."""
@@ -28,7 +27,6 @@ _RATE = re.compile(
 """Samples per second, or the seconds of one as in files of LabVIEW."""
 
 _MIDNIGHT = re.compile('[T ]00:')
-_ZONE = re.compile(r'\b((?:Africa|America|Asia|Atlantic|Australia|Europe|Indian|Pacific)/[\w/]+)')
 
 
 def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
@@ -112,10 +110,8 @@ def row_times(
     if not form and names[0] and not is_named(names[0], 'time'):
         said = f'{names[0]} is taken as the time, by its dates'
         times = times._replace(note='; '.join(filter(None, (said, times.note))))
-    zone = _ZONE.search(' '.join(names))
-    if zone is None or not is_dated:
-        return times
-    return _in_utc(times, zone[1])
+    first = next(filter(None, stamps), '')
+    return in_utc(table, columns, times) if is_dated and lacks_zone(first) else times
 
 
 def _of_one_year(times: Times) -> Times:
@@ -157,17 +153,3 @@ def _doubt(table: TextTable, column: int, times: Times) -> str:
             cure=f'write 01:00 for 100, with the date, or call it {name} [s]',
         )
     return f'no unit of {name} in the header: taken in s; call it time [h] or time [days] if it is'
-
-
-def _in_utc(times: Times, name: str) -> Times:
-    """Return times on the clock of a zone as those of UTC."""
-    try:
-        zone = ZoneInfo(name)
-    except (ZoneInfoNotFoundError, ValueError):
-        return times._replace(note=f'zone {name} is not known here; times are left as they are')
-    epoch = times.epoch or 0.0
-    begin = datetime(1970, 1, 1, tzinfo=zone) + timedelta(seconds=epoch)
-    passed = [0.0, *np.nan_to_num(times.seconds).tolist()]
-    moments = (begin + timedelta(seconds=each) for each in passed)
-    shift, *shifts = ((each.utcoffset() or timedelta()).total_seconds() for each in moments)
-    return times._replace(seconds=times.seconds - shifts + shift, epoch=epoch - shift)

@@ -174,6 +174,14 @@ def dates(stamps: Sequence[str]) -> Times:
     return Times(seconds, first / 1e6, note)
 
 
+def lacks_zone(stamp: str) -> bool:
+    """Whether a text is a date without a zone, on some clock or on that of UTC."""
+    text = stamp.strip()
+    found = [each for form in _FORMS if (each := form.fullmatch(text))]
+    is_date = finite(text) is None or _DIGITS.fullmatch(text) is not None
+    return is_date and bool(found) and not any(each['zone'] for each in found)
+
+
 def _clocks(texts: Sequence[str]) -> Times:
     """Return the times of a clock without dates, a day later where it begins anew."""
     days = dates([f'2000-01-01 {text}' if text else '' for text in texts])

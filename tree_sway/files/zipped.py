@@ -20,10 +20,11 @@ from tree_sway.files.spreadsheet import sheets_of
 from tree_sway.files.text_file import decoded, read_bytes, read_lines, reason_of, table_lines
 
 _MOST_FILES = 200
+_SHOWN = 3
 _HEAD = 200
 _MOST_BYTES = 64 << 20
 """Largest size of all tables of a zip that are unpacked [bytes]."""
-_SUFFIXES = ('.csv', '.txt', '.tsv', '.dat', '.data', '.log', '.tab', '.json')
+_SUFFIXES = ('.csv', '.txt', '.tsv', '.dat', '.data', '.log', '.tab', '.json', '.geojson')
 
 
 def table_in(path: Path, is_wanted: Callable[[str], bool]) -> tuple[str, list[str]]:
@@ -53,9 +54,9 @@ def tables_in(path: Path) -> Iterator[tuple[str, list[str]]]:
             files = [each for each in archive.infolist() if not each.is_dir()]
             found = [each for each in files if Path(each.filename).suffix.lower() in _SUFFIXES]
             if not found or len(files) > _MOST_FILES:
-                raise FormatError(
-                    f'a zip of {len(files)} files, {len(found)} of them tables', cure=cure
-                )
+                names = ', '.join(each.filename for each in files[:_SHOWN])
+                what = f'a zip of {len(files)} files, {len(found)} of them tables: {names}'
+                raise FormatError(what, cure=cure)
             left = _MOST_BYTES
             for each in found:
                 with archive.open(each) as packed:

@@ -275,7 +275,14 @@ JSON = {
         'dt': seconds(t), 'wind': {'speed': u, 'deg': 270, 'gust': 2 * u},
     })},
 }  # fmt: skip
-LOCAL = {'Ambient Weather': 5.0, 'Weathercloud': -1.0}
+LOCAL = {
+    'Ambient Weather': 5.0,
+    'Weathercloud': -1.0,
+    'NREL, MIDC': 7.0,
+    'CIMIS, California': 8.0,
+    'EnergyPlus': -1.0,
+    'New Zealand, CliFlo': -12.0,
+}
 """Hours from the clock of a file to UTC, where the file says its zone."""
 
 
@@ -558,7 +565,7 @@ def test_hours_of_more_services_are_read(name: str, tmp_path: Path) -> None:
     path.write_text(HOURS[name], encoding='utf-8')
     record = read_wind(path, turbulence=False)
     np.testing.assert_allclose(record.time, [0.0, 3600.0, 7200.0])
-    assert record.epoch == seconds(BEGIN)
+    assert record.epoch == seconds(BEGIN) + 3600.0 * LOCAL.get(name, 0.0)
     expected = [[4.0, 0.0], [4.5, 0.0], [5.0, 0.0]]
     np.testing.assert_allclose(record.velocity[:, :2], expected, atol=1e-9)
     assert record.refused <= 1

@@ -80,7 +80,8 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
             f'{len(alike)} tables of the same columns in the JSON, where one is read',
             cure='write the records of one instrument into one list',
         )
-    return longest
+    above = (f'{name}: {cell_of(each)}' for name, each in object_of(document).items())
+    return replace(longest, above=tuple(above))
 
 
 def _units_in(node: Any, *, is_inside: bool, depth: int = 0) -> Iterator[tuple[str, str]]:

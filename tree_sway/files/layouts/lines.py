@@ -11,6 +11,7 @@ empty. A group ``unit`` is of speeds, all alike; ``units`` may tell what its let
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import islice
 import re
@@ -76,7 +77,8 @@ def _read(lines: list[str], source: str, known: dict[str, Any]) -> TextTable:
         units = units | dict.fromkeys(_SPEEDS, units.get(unit, unit))
     columns = [known['name'], *names]
     told = [units.get(name, '') for name in columns]
-    return table_of_cells(columns, rows.values(), source, [*rows], told)
+    table = table_of_cells(columns, rows.values(), source, [*rows], told)
+    return replace(table, above=tuple(lines[: known['skipped']]))
 
 
 LINES = tuple(

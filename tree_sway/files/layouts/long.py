@@ -21,7 +21,15 @@ from statistics import median
 from typing import Any
 
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import folded, is_named, is_wind, STATION, unit_known, WIND
+from tree_sway.files.column_names import (
+    CODES,
+    folded,
+    is_named,
+    is_wind,
+    STATION,
+    unit_known,
+    WIND,
+)
 from tree_sway.files.json_values import text_of
 from tree_sway.files.row_times import time_columns
 from tree_sway.files.table_file import TextTable
@@ -94,7 +102,10 @@ def widened(table: TextTable) -> TextTable:
     wanted = [short.find_all(each)[:1] for each in ('time', 'value')]
     first = table.rows[:_LOOKED_AT]
     columns = range(len(table.columns)) if all(wanted) else ()
-    known = [(sum(map(is_wind, {*table.cells(each, first)})), each) for each in columns]
+    known = [
+        (sum(is_wind(_name_of(table, each, cell)) for cell in {*table.cells(each, first)}), each)
+        for each in columns
+    ]
     most, name = max(known, default=(0, 0), key=lambda each: each[0])
     if not most or [name] in wanted or any(map(is_wind, table.columns)):
         return table
@@ -115,6 +126,11 @@ def unit_for(name: str, units: Mapping[str, Any]) -> str:
     return text_of(units.get(name)) or text_of(next(same, ''))
 
 
+def _name_of(table: TextTable, column: int, cell: str) -> str:
+    """Return the name of a quantity in a cell, which may be its code."""
+    return CODES.get(table.columns[column], {}).get(cell, cell)
+
+
 def _values(
     table: TextTable, wanted: Sequence[int], form: str, units: dict[str, str]
 ) -> Iterator[Value]:
@@ -131,6 +147,7 @@ def _values(
             continue
         *clock, name, value = (cells[each] for each in wanted)
         time = form.format(*clock)
+        name = _name_of(table, wanted[-2], name)
         if value not in _NO_STATE and is_wind(name):
             units.setdefault(name, cells[units_at[0]] if units_at else '')
             yield line, time, name, value

@@ -56,7 +56,7 @@ def motions_of(table: TextTable, other: str = '') -> Motions:
 
     Columns without an axis are under an empty name. Those called x, y and z alone are of the
     quantity of their unit, of the name of the file, or of an acceleration with gravity, else of
-    the ``other`` one.
+    the ``other`` one. A `FormatError` refuses an axis of which two columns have one name.
     """
     found: Motions = {}
     for index, column in enumerate(table.columns):
@@ -65,7 +65,12 @@ def motions_of(table: TextTable, other: str = '') -> Motions:
         is_time = unit_known('time', name_and_unit(column, 'time')[1])  # as X [s] of Delsys
         if (axis or quantity) and not is_time:
             key = quantity, name if axis else ''
-            found.setdefault(key, {}).setdefault(axis or column, index)
+            first = found.setdefault(key, {}).setdefault(axis or column, index)
+            if first != index and table.columns[first] == column:
+                raise table.error(
+                    f"several columns are called '{column}'",
+                    cure='keep those of one place, or tell them apart by their names',
+                )
     axes = found.pop(('', ''), {})
     quantity = _quantity_of(table, [*axes.values()], other)
     return found | ({(quantity, ''): axes} if axes and quantity else {})

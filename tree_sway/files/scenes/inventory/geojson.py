@@ -5,7 +5,7 @@ JSON of trees as tables: a row per record, a column per property.
 
 So are GeoJSON (RFC 7946), whose place is a point or else the mean of the corners, OpenStreetMap's
 elements with ``tags``, ArcGIS's features with ``attributes``, and the records of the portals CKAN
-and Opendatasoft, and records in a list or one in each line.
+and Opendatasoft, and records in a list, one in each line, or one in each file of a zip.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.json_values import document_of, flat, list_of, object_of, Record
 from tree_sway.files.scenes.inventory.geometry_cell import point_of_cell
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.text_file import read_lines
+from tree_sway.files.zipped import tables_in
 
 _GEOMETRY = 'geometry'
 _LISTS = ('features', 'elements', 'records', 'results')
@@ -46,7 +46,8 @@ def read_geojson(path: Path) -> TextTable:
 
     Raises a `FormatError` for broken JSON, no records, or features of which none has a place.
     """
-    whole = document_of(read_lines(path), 'GeoJSON')
+    documents = [document_of(lines, 'GeoJSON') for _, lines in tables_in(path)]
+    whole = documents if len(documents) > 1 else documents[0]
     document = {'records': whole} if isinstance(whole, list) else object_of(whole)
     inner = object_of(document.get('result')) or document
     listed = next((name for name in _LISTS if name in inner), '')

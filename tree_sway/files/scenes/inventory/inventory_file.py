@@ -36,8 +36,13 @@ def inventory_table(path: Path, head: str) -> TextTable:
 def has_own_format(path: Path, head: str) -> bool:
     """Whether a file is of a format that inventories have and other files of trees have not."""
     if path.suffix.lower() == '.zip':
-        return _is_inventory('\n'.join(table_in(path, _is_inventory)[1]))
+        return _own_reader(path, head) is not None or _is_inventory(_head_in(path))
     return _own_reader(path, head) is not None
+
+
+def _head_in(path: Path) -> str:
+    """Return the table in a zip that is most like an inventory."""
+    return '\n'.join(table_in(path, _is_inventory)[1])
 
 
 def _own_reader(path: Path, head: str) -> Callable[[Path], TextTable] | None:
@@ -46,6 +51,8 @@ def _own_reader(path: Path, head: str) -> Callable[[Path], TextTable] | None:
         return read_geopackage
     if path.suffix.lower() in ('.xlsx', '.xlsm'):
         return read_spreadsheet
+    if path.suffix.lower() == '.zip':
+        head = _head_in(path)
     return read_geojson if looks_like_geojson(head) or _has_records(head) else None
 
 
