@@ -218,6 +218,13 @@ def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
         ('a.txt', 'wx,at=roof speed=4.0,dir=250 1709647200000000000\nwx,at=a', 'of InfluxDB'),
         ('log.csv', '!Boat,Utc,TWS\n!boat,0,5\n0,45858.5,5,12.1\n', 'pairs of the number'),
         ('a.log', 'FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n', 'of ArduPilot'),
+        ('o.sto', 'DataRate=100.0\nDataType=Quaternion\nversion=3\n', 'the cells of OpenSim'),
+        ('walk.gpx', '<?xml version="1.0"?>\n<gpx creator="x">\n', 'a track of places'),
+        (
+            'ACC.csv',
+            '1791021600.000000, 1791021600.000000, 1791021600.000000\n32.0, 32.0, 32.0\n-12,36,54\n',
+            'counts of 1/64 g',
+        ),
         ('take.csv', 'Format Version,1.23,Take Name,pull\n', 'a take of OptiTrack Motive'),
         ('a.mnd', 'FORMAT-1\n2024-03-05 00:00:00 0\nSFAS\n', 'profiles of a sodar in blocks'),
     ],
@@ -235,6 +242,7 @@ def test_the_beginning_tells_before_the_suffix(
     [
         ('a.gml', '<?xml version="1.0"?>\n<core:CityModel>\n', 'a city model of CityGML'),
         ('a.xml', '<?xml version="1.0"?><?xml-stylesheet?>\n<Bestand>\n', 'stand of TreeGrOSS'),
+        ('a.gml', '<wfs:FeatureCollection xmlns:wfs="x">\n', 'features of a map service in GML'),
         ('a.asc', '//X Y Z Intensity\n1 2 3 40\n', 'a point cloud'),
         ('a.csv', '"code","azimuth","dBase","dTip"\n"L1",0,70,50\n', 'the logs and branches'),
     ],

@@ -11,6 +11,7 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.species.species import species_named
 from tree_sway.errors import ParameterError, TreeError
+from tree_sway.files.trees import open_tree
 from tree_sway.identification.calibration import calibrate
 
 OAK = species_named('oak')
@@ -102,6 +103,16 @@ def test_the_branch_that_sways_is_named(sketch):
     )
     assert of_the_stem.branch == stem
     assert of_the_stem.species.modulus < 0.1 * slowest.species.modulus
+
+
+def test_branches_that_are_cut_keep_their_names():
+    """The goldcrest's are more pieces than branches."""
+    tree = open_tree('goldcrest').tree
+    slowest = calibrate(tree, None, 1.5)
+    assert slowest.branch in tree.branch_names
+    fitted = calibrate(tree, None, 1.5, branch='stem')
+    assert fitted.branch == 'stem'
+    assert fitted.frequency == pytest.approx(1.5)
 
 
 @pytest.mark.parametrize('frequency', [0.0, -1.0, np.nan, np.inf, 2e3])

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import re
+
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -150,8 +152,22 @@ def test_a_sway_in_wind_alone_is_no_release(seed):
 def test_the_frequency_of_a_tree_in_wind_is_given_with_the_refusal(frequency):
     with pytest.raises(FormatError) as refusal:
         estimate_sway(*in_wind(frequency))
-    found = float(refusal.value.what.partition('fastest at ')[2].split()[0])
+    found = float(refusal.value.what.partition('clearest at ')[2].split()[0])
     assert found == pytest.approx(frequency, rel=0.05)
+
+
+@pytest.mark.parametrize('seed', range(3))
+def test_the_noise_of_an_accelerometer_is_no_sway(seed):
+    """It is white: times the square of frequency it is largest at the end of the spectrum."""
+    time, motion = in_wind(0.4, seed=seed)
+    acceleration = np.gradient(np.gradient(motion, time, axis=0), time, axis=0)
+    noise = np.random.default_rng(seed).normal(size=acceleration.shape)
+    noisy = acceleration + 0.2 * acceleration.std() * noise
+    for band in (None, (0.2, 1.0)):
+        with pytest.raises(FormatError) as refusal:
+            estimate_sway(time, noisy, band)
+        found = float(re.findall(r'(?:clearest at|near) ([\d.]+) Hz', refusal.value.what)[0])
+        assert found == pytest.approx(0.4, rel=0.1)
 
 
 def test_a_gap_and_a_slow_sensor_are_named():

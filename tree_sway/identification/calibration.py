@@ -171,8 +171,11 @@ class _ScaledTree:
         self, tree: Tree, species: Species, settings: Settings, branch: str | None
     ) -> None:
         self.tree = tree
-        self._branch = branch
-        self.reduction = TreeReductions(tree, species, settings).with_subtrees.reduction
+        self._reduced = reduced = TreeReductions(tree, species, settings).with_subtrees
+        self.reduction = reduced.reduction
+        self._branches = np.repeat(reduced.branch, np.diff(self.reduction.first))
+        """Branch of each coordinate: a branch may be cut into several pieces."""
+        self._wanted = None if branch is None else tree.branch_names.index(branch)
         factor, coordinate = buckling_factor(self.reduction)
         #: Scale at which the tree just carries its weight, and the branch that buckles first.
         self.least = _STANDS / factor
@@ -180,19 +183,22 @@ class _ScaledTree:
 
     def branch_of(self, coordinate: int) -> str:
         """Name of the branch of a coordinate."""
-        branch = int(np.searchsorted(self.reduction.first, coordinate, side='right')) - 1
-        return self.tree.branch_names[branch]
+        return self.tree.branch_names[self._branches[coordinate]]
 
     def sway(self, scale: float) -> _Sway:
-        """Slowest mode at a scale."""
+        """Slowest mode at a scale, of those that bend the wanted branch most."""
         scaled = replace(self.reduction, elastic=scale * self.reduction.elastic)
-        count = 1 if self._branch is None else min(_MODES, scaled.elastic.shape[0])
-        modes = natural_modes(self.tree, scaled, count)
+        count = 1 if self._wanted is None else min(_MODES, scaled.elastic.shape[0])
+        modes = natural_modes(self._reduced.tree, scaled, count)
         energy = modes.shapes * (self.reduction.elastic @ modes.shapes)
-        most = np.argmax(energy, axis=0).tolist()
-        mode = next((k for k, at in enumerate(most) if self.branch_of(at) == self._branch), 0)
+        most = np.argmax(energy, axis=0)
+        mode = 0
+        if self._wanted is not None:
+            is_own = self._branches == self._wanted
+            share = energy[is_own].sum(axis=0) / energy.sum(axis=0)
+            mode = int(np.argmax(is_own[most]) if is_own[most].any() else np.argmax(share))
         square = float(modes.circular[mode]) ** 2
-        return _Sway(scale, square, float(energy[:, mode].sum()), most[mode])
+        return _Sway(scale, square, float(energy[:, mode].sum()), int(most[mode]))
 
     def swaying_at(self, square: float) -> _Sway | None:
         """Find the scale for a square circular frequency [1/s^2]; None if the tree buckles."""

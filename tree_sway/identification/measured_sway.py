@@ -63,15 +63,32 @@ def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> Free
     even, dt, gap = _even(*_checked(time, motion))
     decay = _release(even, dt, gap, band)
     if not _is_release(decay):
-        frequency, power = signal.welch(even, 1.0 / dt, nperseg=min(len(even), 4096), axis=0)
-        peak = frequency[np.argmax(power.sum(axis=1) * frequency**2)]
+        peak = _clearest(even, dt, band)
+        told = f'; it is clearest at {peak:.3g} Hz' if peak else ''
         raise FormatError(
-            f'the motion does not decay from one swing; it is fastest at {peak:.3g} Hz',
+            f'the motion does not decay from one swing{told}',
             cure='record a pull and release on a calm day; of a tree in wind, give that frequency '
             'yourself if it is the sway, and not the damping',
         )
     _refuse_lost(decay)
     return decay
+
+
+def _clearest(even: Floats, dt: float, band: tuple[float, float] | None) -> float:
+    """
+    Return the frequency [Hz] that stands out most from those beside it; 0 without one.
+
+    As it is compared on a scale of logarithms, it is the same of a displacement and of the
+    acceleration, whose noise is largest at other ends of the spectrum.
+    """
+    frequency, power = signal.welch(even, 1.0 / dt, nperseg=min(len(even), 4096), axis=0)
+    lowest, highest = band or (0.0, np.inf)
+    is_wanted = (frequency > lowest) & (frequency < highest)
+    levels = np.log(power.sum(axis=1)[is_wanted] + np.finfo(float).tiny)
+    peaks, known = signal.find_peaks(levels, prominence=0.0)
+    if not len(peaks):
+        return 0.0
+    return float(frequency[is_wanted][peaks[np.argmax(known['prominences'])]])
 
 
 def _is_release(decay: FreeDecay) -> bool:
