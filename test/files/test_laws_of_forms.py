@@ -222,7 +222,7 @@ def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
         ('walk.gpx', '<?xml version="1.0"?>\n<gpx creator="x">\n', 'a track of places'),
         (
             'ACC.csv',
-            '1791021600.000000, 1791021600.000000, 1791021600.000000\n32.0, 32.0, 32.0\n-12,36,54\n',
+            '1791021600.0, 1791021600.0, 1791021600.0\n32.0, 32.0, 32.0\n-12,36,54\n',
             'counts of 1/64 g',
         ),
         ('take.csv', 'Format Version,1.23,Take Name,pull\n', 'a take of OptiTrack Motive'),

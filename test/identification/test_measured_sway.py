@@ -163,11 +163,10 @@ def test_the_noise_of_an_accelerometer_is_no_sway(seed):
     acceleration = np.gradient(np.gradient(motion, time, axis=0), time, axis=0)
     noise = np.random.default_rng(seed).normal(size=acceleration.shape)
     noisy = acceleration + 0.2 * acceleration.std() * noise
-    for band in (None, (0.2, 1.0)):
-        with pytest.raises(FormatError) as refusal:
-            estimate_sway(time, noisy, band)
-        found = float(re.findall(r'(?:clearest at|near) ([\d.]+) Hz', refusal.value.what)[0])
-        assert found == pytest.approx(0.4, rel=0.1)
+    with pytest.raises(FormatError) as refusal:
+        estimate_sway(time, noisy, (0.2, 1.0))
+    found = float(re.findall(r'(?:clearest at|near) ([\d.]+) Hz', refusal.value.what)[0])
+    assert found == pytest.approx(0.4, rel=0.1)
 
 
 def test_a_gap_and_a_slow_sensor_are_named():

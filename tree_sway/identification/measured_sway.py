@@ -23,6 +23,8 @@ from tree_sway.identification.spectral_peaks import Band, spectral_peaks
 _MIN_SAMPLES = 16
 _LARGEST = 1e100
 _UNSURE = (0.03, 0.25)
+_CLEAR = 0.5
+"""Share of the largest prominence, of logarithms, from which on a peak is clear."""
 _LEAST_CLEAR = 4.0
 _EXPLAINED = 0.6
 _QUIET = 0.5
@@ -76,7 +78,7 @@ def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> Free
 
 def _clearest(even: Floats, dt: float, band: tuple[float, float] | None) -> float:
     """
-    Return the frequency [Hz] that stands out most from those beside it; 0 without one.
+    Return the lowest frequency [Hz] that stands out from those beside it; 0 without one.
 
     As it is compared on a scale of logarithms, it is the same of a displacement and of the
     acceleration, whose noise is largest at other ends of the spectrum.
@@ -88,7 +90,8 @@ def _clearest(even: Floats, dt: float, band: tuple[float, float] | None) -> floa
     peaks, known = signal.find_peaks(levels, prominence=0.0)
     if not len(peaks):
         return 0.0
-    return float(frequency[is_wanted][peaks[np.argmax(known['prominences'])]])
+    is_clear = known['prominences'] >= _CLEAR * known['prominences'].max()
+    return float(frequency[is_wanted][peaks[is_clear][0]])
 
 
 def _is_release(decay: FreeDecay) -> bool:
