@@ -112,7 +112,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       const { open, towards } = shade(end);
       const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c]) + (BOUGH / bough.radius) * (end[c] - bough.centre[c])));
       // Leaves within a bough are darker than those at its surface.
-      const tint = (isSpread ? 0.8 + 0.3 * Math.min(1, distance(end, bough.centre) / bough.radius) : 1) + UNEVEN * Math.sin(7 * shoot.phase + card);
+      const tint = (isSpread ? 0.6 + 0.55 * Math.min(1, distance(end, bough.centre) / bough.radius) : 1) + UNEVEN * Math.sin(7 * shoot.phase + card);
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
