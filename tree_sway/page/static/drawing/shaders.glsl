@@ -136,7 +136,7 @@ void main() {
     // A stem flares into its roots at its foot; the shadow is wider still there, where the sky is hidden too.
     float foot = max(0.0, 1.0 - 14.0 * (p.z - ground) * shadowTop) * step(0.9, thickness);
     // Wood swells and narrows along its way and about it.
-    float knobbly = 0.09 * sin(6.2831853 * skin.x + 2.6 * sin(0.9 * skin.y)) + 0.07 * sin(3.7 * skin.y + 0.7 * segment);
+    float knobbly = 0.08 * sin(6.2831853 * skin.x + 2.6 * sin(0.9 * skin.y)) + 0.03 * sin(3.7 * skin.y + 0.7 * segment);
     p += root.w * (1.0 + min(thickness, 1.0) * knobbly + 1.6 * step(0.5, shadowArea.w) * foot) * across;
     normal = across;
   }
@@ -331,7 +331,7 @@ void main() {
   float chance = fract(43758.5453 * sin(dot(floor(at * cells), vec2(12.9898, 78.233))));
   // Sooner in a large picture, which has many leaves, than in that of a single one.
   float points = float(textureSize(leaves, 0).x);
-  float mixed = min(1.0, 0.22 * max(0.0, log2(3e-4 * points * points * small)));
+  float mixed = min(1.0, 0.22 * max(0.0, log2(4.5e-4 * points * points * small)));
   float least = mix(0.5, 0.1 + 0.68 * chance, mixed);
   float shown = edge * leaf.a;
   // The rim of a leaf covers a part of its pixel.
@@ -683,8 +683,8 @@ vec4 treeRow(vec3 way, float round, float seed) {
     float deep = sqrt(max(0.0, 1.0 - min(1.0, x * x + z * z)));
     vec3 n = normalize(vec3((x + 0.3 * bough.x) * beside - deep * outward, z + 0.3 * bough.y));
     float shone = max(0.0, 0.2 + 0.8 * dot(n, light)) * smoothstep(0.1, 0.7, rough);
-    vec3 own = mix(isPointed ? vec3(0.13, 0.2, 0.11) : vec3(0.2, 0.27, 0.12), vec3(0.33, 0.36, 0.16), one * one * (isPointed ? 0.2 : 1.0));
-    vec3 lit = own * toned(sky * (0.2 + 0.25 * z + 0.7 * rough) + 1.7 * sun * shone);
+    vec3 own = mix(isPointed ? vec3(0.13, 0.2, 0.11) : vec3(0.2, 0.27, 0.12), vec3(0.27, 0.31, 0.15), one * one * (isPointed ? 0.2 : 1.0));
+    vec3 lit = own * toned(sky * (0.3 + 0.25 * z + 0.5 * rough) + 1.2 * sun * shone);
     if (edge > 1.0 + rim) lit = vec3(0.12, 0.1, 0.08);
     // The right one stands before the left one.
     best = vec4(mix(best.rgb, lit, shown / max(shown + best.a * (1.0 - shown), 1e-3)), shown + best.a * (1.0 - shown));
@@ -760,7 +760,7 @@ void main() {
   for (float row = 3.0; row > 0.0; row--) {
     float round = (0.07 + 0.1 * row) / haze;
     vec4 trees = kind < 0.5 ? blurred(way, 0.5 * round, 11.0 * row) : treeRow(way, round, 11.0 * row);
-    c = mix(c, mix(dimmed * trees.rgb, horizon, (kind < 0.5 ? 0.0 : 0.36) + 0.12 * row), trees.a);
+    c = mix(c, mix(dimmed * trees.rgb, horizon, (kind < 0.5 ? 0.0 : 0.24) + 0.12 * row), trees.a);
   }
 #endif
   color = vec4(c, 1.0);
