@@ -41,6 +41,7 @@ FORMS = (
     'lobed',
     'palmate',
     'compound',
+    'pinnate',
     'digitate',
     'needles',
     'bunches',

@@ -30,9 +30,9 @@ const {
   /** Number of different twigs in clusters, of cards on one, half the width of its wood over the size of the cluster, and the part
    * of it before the first card of a tuft. */
   VARIETY, ON_TWIG, TWIG_WIDE, BARE_TWIG,
-  /** Radius of wood that gets leaves though it has no cluster, over the thickest that has one; size of these shoots over
-   * that of a cluster, and at most [m]. */
-  THIN, BARE_SIZE, LARGEST_BARE,
+  /** Radius of wood that gets leaves or needles though it has no cluster, over the thickest that has one; size of these shoots
+   * over that of a cluster, and at most [m]. */
+  THIN, CLAD, BARE_SIZE, LARGEST_BARE,
   /** Length below which a limb under the crown is dead, over that of the longest. */
   DEAD,
   /** Lengths over the size of a shoot: below the first a branch without leaves stays bare; above the second a segment is
@@ -112,7 +112,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       const { open, towards } = shade(end);
       const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c]) + (BOUGH / bough.radius) * (end[c] - bough.centre[c])));
       // Leaves within a bough are darker than those at its surface.
-      const tint = (isSpread ? 0.8 + 0.3 * Math.min(1, distance(end, bough.centre) / bough.radius) : 1) + UNEVEN * Math.sin(7 * shoot.phase + card);
+      const tint = (isSpread ? 0.6 + 0.55 * Math.min(1, distance(end, bough.centre) / bough.radius) : 1) + UNEVEN * Math.sin(7 * shoot.phase + card);
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
@@ -212,7 +212,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   const shoots = [];
   const isWeeping = weeps(look);
   const size = isWeeping ? mean : Math.min(BARE_SIZE * mean, LARGEST_BARE);
-  const leafiest = thickest * (THIN + CURTAIN * Math.max(0, look.is_potted ? 0 : look.droop ?? 0));
+  const leafiest = thickest * (look.has_needles ? CLAD : THIN + CURTAIN * Math.max(0, look.is_potted ? 0 : look.droop ?? 0));
   const share = (size / mean) ** 2;
   /** @param {number} segment @param {number} along [m] */
   const add = (segment, along) => {
@@ -227,8 +227,8 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     // A short stub stays bare: its few leaves would float in the air.
     if (reachOf(arrays, branch) > STUB * size || leafy.has(end)) add(end, length[end] - 0.5 * size);
     for (let segment = first[branch]; segment <= end; segment++) {
-      // A cluster clothes no long shoot from its foot on.
-      if (look.form === "tufts" || radius[2 * segment] > leafiest || (leafy.has(segment) ? length[segment] < LONG * size : segment === end)) continue;
+      // A cluster clothes no long shoot from its foot on, and no branch of a conifer.
+      if (look.form === "tufts" || radius[2 * segment] > leafiest || (leafy.has(segment) ? !look.has_needles && length[segment] < LONG * size : segment === end)) continue;
       const count = Math.ceil(length[segment] / ((isWeeping ? 0.7 : 1.5) * size));
       for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }

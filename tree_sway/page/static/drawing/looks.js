@@ -6,7 +6,7 @@ import { LOOKS } from "../checks.js";
 
 /** Look of an average broadleaf; outlines of leaves; and, by pattern of the bark, the colour and height (over that of the
  * tree) of a different bark at the foot; brightness of the ground of each pattern and its marks (number,
- * raggedness, then least and range of light, half width and half height [px]); colours of the flowers in a candle; angle and size of leaflets like fingers; corners of a
+ * raggedness, then least and range of light, half width and half height [px]); colours of the flowers in a candle; place along the stalk, angle and size of leaflets; corners of a
  * picture, along and across from its middle, and of a triangle of the same area that shows most of it; and numbers that
  * the modules explain which take them.
  * @type {{average: Look, outlines: Record<string, number[][]>, feet: Record<string, {color: number[], height: number}>,

@@ -7,7 +7,7 @@
 precision highp float;
 precision highp int;
 // Tones of light: full sun is held back, as in a photograph.
-vec3 toned(vec3 c) { return 2.25 * c / (c + 1.2); }
+vec3 toned(vec3 c) { return 2.6 * c / (c + 1.6); }
 uniform vec4 stem; // of the first tree: place, one over the radius of the trees and of the stem or the pot
 // Share of the light of the sky that reaches the ground: less under a crown, least beside a stem.
 float skyAt(vec2 p) {
@@ -39,7 +39,7 @@ float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0
 
 #part sunlit seen
 uniform mediump sampler2DShadow sunMap;
-vec3 inSunMap(vec3 p) { return 0.5 + 0.5 * fallen(p) - vec3(0.0, 0.0, 0.22 * sqrt(shadowTop)); }
+vec3 inSunMap(vec3 p) { return 0.5 + 0.5 * fallen(p) - vec3(0.0, 0.0, 0.12 * sqrt(shadowTop)); }
 // Share of sunlight that reaches a point, and the same filtered over two places beside it, which are turned by an angle.
 float sunlight(vec3 p) { return texture(sunMap, inSunMap(p)); }
 float sunlight(vec3 p, float soft, float turn) {
@@ -135,7 +135,9 @@ void main() {
     vec3 across = turned(q, vec3(0.0, ring.yz));
     // A stem flares into its roots at its foot; the shadow is wider still there, where the sky is hidden too.
     float foot = max(0.0, 1.0 - 14.0 * (p.z - ground) * shadowTop) * step(0.9, thickness);
-    p += root.w * (1.0 + 1.6 * step(0.5, shadowArea.w) * foot) * across;
+    // Wood swells and narrows along its way and about it.
+    float knobbly = 0.08 * sin(6.2831853 * skin.x + 2.6 * sin(0.9 * skin.y)) + 0.03 * sin(3.7 * skin.y + 0.7 * segment);
+    p += root.w * (1.0 + min(thickness, 1.0) * knobbly + 1.6 * step(0.5, shadowArea.w) * foot) * across;
     normal = across;
   }
   at = skin.xy;
@@ -181,7 +183,7 @@ void main() {
     // Ridges of thick wood have a bright and a dark side, and an upper and a lower one.
     float slope = rough.r - texture(relief, (at + vec2(0.03, 0.0)) * vec2(1.0, 0.5)).r;
     float rise = rough.r - texture(relief, (at + vec2(0.0, 0.03)) * vec2(1.0, 0.5)).r;
-    n = normalize(n + tone.x * (2.5 * slope * normalize(vec3(-n.y, n.x, 1e-3)) + vec3(0.0, 0.0, rise)));
+    n = normalize(n + tone.x * (4.5 * slope * normalize(vec3(-n.y, n.x, 1e-3)) + vec3(0.0, 0.0, 2.0 * rise)));
   }
 #endif
   vec3 own = barkColor;
@@ -201,13 +203,13 @@ void main() {
     float fine = noise(about * 7.0 + vec2(0.0, 9.0 * at.y)) + noise(about.yx * 15.0 + vec2(31.0 * at.y, 3.0));
     own *= 0.5 + 0.3 * lumps + 0.2 * fine;
     own = mix(own, vec3(0.5, 0.53, 0.43), 0.45 * smoothstep(1.2, 1.5, lumps + 0.35 * (fine - 1.0)));
-    n = normalize(n + 0.35 * tone.x * vec3(lumps - 1.0, 0.7 * (fine - 1.0), 0.5 * (lumps - fine)));
+    n = normalize(n + 0.6 * tone.x * vec3(lumps - 1.0, 0.7 * (fine - 1.0), 0.5 * (lumps - fine)));
   }
 #endif
-  vec3 base = mix(twigColor, own * (0.15 + 0.77 * rough), tone.x);
+  vec3 base = mix(twigColor, own * (0.05 + 0.95 * rough * (0.4 + 0.6 * rough)), tone.x);
   base = mix(base, paint.rgb, paint.a);
-  // Within the crown, and at the foot among grass, bark is dark.
-  float open = (0.28 + 0.72 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high));
+  // Within the crown, at the foot among grass, and where a limb joins another, bark is dark.
+  float open = (0.28 + 0.72 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high)) * (0.72 + 0.28 * smoothstep(0.1, 0.7, at.y));
 #ifdef PLAIN
   float shone = sunny;
 #else
@@ -264,7 +266,7 @@ void main() {
   const float least = 0.3; // of the sun: few cards for many leaves hide more of it than these would
 #else
   edge = min(1.0, 1.6 * abs(dot(flat_, back)));
-  float own = 0.5;
+  float own = 1.8;
   const float least = 0.12;
 #endif
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
@@ -279,7 +281,7 @@ void main() {
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
   float sunny = mix(least, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
   // Light that other leaves have passed on is green.
-  vec3 up = sky * mix(vec3(0.54, 0.55, 0.38), vec3(1.1, 1.1, 0.9), near) * (0.72 + 0.28 * n.z) * (0.85 + 0.15 * turnedTo);
+  vec3 up = sky * mix(vec3(0.42, 0.44, 0.33), vec3(1.05, 1.1, 0.95), near) * (0.66 + 0.34 * n.z) * (0.85 + 0.15 * turnedTo);
   // Light through a leaf is yellow, and is seen most against the sun.
   vec3 through = vec3(1.4, 1.6, 0.5) * max(-side * dot(flat_, light), 0.0) * (0.9 - 0.5 * turnedTo);
   vec3 direct = sun * sunny * ((0.1 + 0.9 * turnedTo) * (0.13 + 2.2 * max(0.75 * across + 0.25, 0.0)) + through);
@@ -329,7 +331,7 @@ void main() {
   float chance = fract(43758.5453 * sin(dot(floor(at * cells), vec2(12.9898, 78.233))));
   // Sooner in a large picture, which has many leaves, than in that of a single one.
   float points = float(textureSize(leaves, 0).x);
-  float mixed = min(1.0, 0.22 * max(0.0, log2(7e-4 * points * points * small)));
+  float mixed = min(1.0, 0.22 * max(0.0, log2(4.5e-4 * points * points * small)));
   float least = mix(0.5, 0.1 + 0.68 * chance, mixed);
   float shown = edge * leaf.a;
   // The rim of a leaf covers a part of its pixel.
@@ -455,11 +457,12 @@ void main() {
   vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w, 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
-  vec3 tint = lush.rgb * (0.8 + 0.5 * blade.w * blade.w);
+  // The farthest ones pass into the ground beyond them.
+  vec3 tint = lush.rgb * (0.8 + 0.5 * blade.w * blade.w) * (1.0 + 0.2 * dot(blade.xy, blade.xy));
   // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.55 + 0.7 * max(light.z, 0.3)) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
-  base = vec4(tint * skyAt(root) * mix(vec3(0.36, 0.4, 0.5), vec3(1.0), sunny), clearness(p));
+  base = vec4(tint * skyAt(root) * mix(vec3(0.36, 0.4, 0.5), vec3(1.0), sunny), exp(-3.0 * haze * distance(eye, p)));
   gl_Position = seen(p);
 }
 
@@ -653,10 +656,10 @@ vec4 treeRow(vec3 way, float round, float seed) {
   vec2 outward = vec2(cos(turn), sin(turn));
   vec2 beside = vec2(-outward.y, outward.x);
   // Boughs are round, with shade between them.
-  const float rim = 0.1;
+  const float rim = 0.3;
   float fine = 2.0 * cloudy(1.9 * leaf + seed) - 0.5;
   vec3 bough = lobes(leaf / 2.4 + 0.5 * fine + seed);
-  float rough = 0.35 * bough.z + 0.65 * fine;
+  float rough = 0.15 * bough.z + 0.85 * fine;
   // Woods, hedges and gaps.
   float wooded = smoothstep(0.16, 0.42, tiled(vec2(along * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
   vec4 best = vec4(0.0);
@@ -678,10 +681,10 @@ vec4 treeRow(vec3 way, float round, float seed) {
     float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) - (isPointed ? 0.7 : 0.9) * (rough - 0.45);
     float shown = max(1.0 - smoothstep(1.0 - rim, 1.0 + rim, edge), z < 0.0 && abs(x) * wide < 0.03 * tall ? 1.0 : 0.0);
     float deep = sqrt(max(0.0, 1.0 - min(1.0, x * x + z * z)));
-    vec3 n = normalize(vec3((x + 0.8 * bough.x) * beside - deep * outward, z + 0.8 * bough.y));
+    vec3 n = normalize(vec3((x + 0.3 * bough.x) * beside - deep * outward, z + 0.3 * bough.y));
     float shone = max(0.0, 0.2 + 0.8 * dot(n, light)) * smoothstep(0.1, 0.7, rough);
-    vec3 own = mix(isPointed ? vec3(0.13, 0.2, 0.11) : vec3(0.2, 0.27, 0.12), vec3(0.33, 0.36, 0.16), one * one * (isPointed ? 0.2 : 1.0));
-    vec3 lit = own * toned(sky * (0.2 + 0.25 * z + 0.7 * rough) + 1.7 * sun * shone);
+    vec3 own = mix(isPointed ? vec3(0.13, 0.2, 0.11) : vec3(0.2, 0.27, 0.12), vec3(0.27, 0.31, 0.15), one * one * (isPointed ? 0.2 : 1.0));
+    vec3 lit = own * toned(sky * (0.3 + 0.25 * z + 0.5 * rough) + 1.2 * sun * shone);
     if (edge > 1.0 + rim) lit = vec3(0.12, 0.1, 0.08);
     // The right one stands before the left one.
     best = vec4(mix(best.rgb, lit, shown / max(shown + best.a * (1.0 - shown), 1e-3)), shown + best.a * (1.0 - shown));
@@ -750,14 +753,14 @@ void main() {
     }
     soil *= dimmed * (0.55 + 0.7 * max(light.z, 0.3)) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
     // Far meadows stay green up to the edge of the wood.
-    c = mix(horizon, soil, max(0.6, exp(-haze * far)));
+    c = mix(horizon, soil, max(0.6, exp(-3.0 * haze * far)));
   }
 #ifndef PLAIN
   // Rows of trees stand on it, the far one first.
   for (float row = 3.0; row > 0.0; row--) {
     float round = (0.07 + 0.1 * row) / haze;
     vec4 trees = kind < 0.5 ? blurred(way, 0.5 * round, 11.0 * row) : treeRow(way, round, 11.0 * row);
-    c = mix(c, mix(dimmed * trees.rgb, horizon, (kind < 0.5 ? 0.0 : 0.26) + 0.12 * row), trees.a);
+    c = mix(c, mix(dimmed * trees.rgb, horizon, (kind < 0.5 ? 0.0 : 0.24) + 0.12 * row), trees.a);
   }
 #endif
   color = vec4(c, 1.0);

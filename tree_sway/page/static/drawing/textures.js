@@ -262,25 +262,14 @@ class Brush {
     }
   }
 
-  /** Leaflets in pairs along a stalk, or like fingers at its end. @param {() => void} blade paints one
+  /** Leaflets along a stalk, or like fingers at its end, the last one on its tip. @param {() => void} blade paints one
    * @param {string} color of the stalk */
   leaflets(blade, color) {
     const { look: { form }, random } = this;
-    if (form === "digitate") {
-      this.line(0.36, 0.016, color);
-      for (const [lean, share] of places.digitate) {
-        this.at(0.36, 0, lean + 0.1 * (random() - 0.5), share, blade);
-      }
-      return;
-    }
-    // Four pairs, and one at the end.
-    const long = 0.275;
-    this.line(0.98 - long, 0.02, color);
-    for (let i = 0; i < 9; i++) {
-      const pair = Math.floor(i / 2);
-      const lean = pair > 3 ? 0 : (i % 2 ? 1 : -1) * (1 - 0.06 * pair) + 0.15 * (random() - 0.5);
-      const along = 0.16 + 0.175 * Math.min(3, pair);
-      this.at(along, 0, lean, long * (0.75 + 0.06 * pair), blade);
+    const leaflets = places[form];
+    this.line(leaflets[leaflets.length - 1][0], 0.018, color);
+    for (const [along, lean, share] of leaflets) {
+      this.at(along, 0, lean + 0.12 * (random() - 0.5), share, blade);
     }
   }
 }
