@@ -105,7 +105,7 @@ VIEWS = (
     View('benjamina_software', 'benjamina', is_full=False),
     View('benjamina_dark', 'benjamina', is_dark=True, has_cards=True),
     View('goldcrest', 'goldcrest', script=_WHOLE, size=SQUARE),
-    View('oak', 'oak', script=_CLOSE, size=SQUARE),
+    View('oak', 'oak', script=_NEARLY, size=SQUARE),
     View('oak_autumn', 'oak', script=_EVENING + _AUTUMN),
     View('birch', 'birch', script=_CLOSE, size=SQUARE),
     View('spruce', 'spruce', script=_CLOSE, size=SQUARE),

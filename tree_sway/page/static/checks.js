@@ -23,10 +23,10 @@ export const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: 
 
 /** Type and axes of each array of a kind; leaf arrays are absent on bare trees.
  * @type {{description: Forms, tables: Forms}} */
-export const FORMS = JSON.parse(await textOf("arrays.json"));
+export const FORMS = JSON.parse(await textOf("arrays.json", () => new URL("./arrays.json", import.meta.url)));
 
 /** Looks of leaves and bark. */
-export const LOOKS = JSON.parse(await textOf("looks.json"));
+export const LOOKS = JSON.parse(await textOf("looks.json", () => new URL("./looks.json", import.meta.url)));
 
 const BY_BRANCH = ["branch_parent", "branch_base_segment", "branch_coordinate", "branch_keys", "branch_base_turn",
   "branch_turn"];

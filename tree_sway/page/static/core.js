@@ -5,7 +5,7 @@
 import { need, ProtocolError } from "./checks.js";
 import { bytesOf } from "./files.js";
 
-const program = await bytesOf("sway.wasm");
+const program = await bytesOf("sway.wasm", () => new URL("./sway.wasm", import.meta.url));
 if (!globalThis.WebAssembly?.validate(program)) {
   const text = "This browser has no WebAssembly with SIMD, or it is switched off: take Chrome 91, Firefox 89, Safari 16.4 or later.";
   Object.assign(globalThis.document?.getElementById("notice") ?? {}, { hidden: false, textContent: text });
