@@ -252,3 +252,13 @@ def test_a_zone_that_is_not_known_is_said(tmp_path: Path) -> None:
     record = read_wind(path, turbulence=False)
     assert record.epoch == 1721001600.0
     assert any('zone Europe/Atlantis is not known here' in note for note in record.notes)
+
+
+@pytest.mark.parametrize('system', ['UTM32', 'EPSG:25832', 'Gauß-Krüger, Zone 3', 'm'])
+def test_the_system_of_a_map_is_no_unit(system: str) -> None:
+    columns = [f'{name} ({system})' for name in ('Rechtswert', 'Hochwert')]
+    table = TextTable(tuple(columns), [2], [('390000', '5820000')], tuple, 'trees.csv')
+    for quantity, index in (('x', 0), ('y', 1)):
+        found = table.find(quantity)
+        assert found is not None
+        assert (found.index, found.factor) == (index, 1.0)

@@ -71,6 +71,8 @@ _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
 _SCALED = re.compile(r'(\d+(?:\.\d+)?(?:e[-+]\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
+_MAP = re.compile('UTM|ETRS|EPSG|WGS|GK|LV|RD|OSGB|SWEREF|Lambert|Gau(ß|ss)', re.IGNORECASE)
+"""System of places on a map, in brackets behind one of them: it is no unit."""
 _IN_BRACKETS = re.compile(r'(?:[\[(]|\s-\s)([xyzXYZ])(?:[\])]|(?=\s|$))')
 """Axis in brackets or behind a sign, as in ``Acceleration - x (m/s²)``."""
 _AXIS_WORD = re.compile(_KNOWN['axis_word'])
@@ -195,7 +197,7 @@ def name_and_unit(column: str, kind: str) -> tuple[str, str]:
         if unit_known(kind, unit):
             return name, unit
     if in_brackets:
-        return name, in_brackets[0]
+        return name, '' if _MAP.match(in_brackets[0]) else in_brackets[0]
     return text, ''
 
 

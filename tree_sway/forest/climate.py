@@ -75,7 +75,7 @@ def climate_of(text: str) -> Climate:
         raise ParameterError(what, where='--climate', cure=cure) from None
     within('--climate', climate.speed, 0.5, 80.0, 'm/s')
     if climate.shape is not None:
-        within('--climate', climate.shape, 0.5, 10.0)
+        within(f'--climate {text[:20]}: shape of a Weibull distribution', climate.shape, 0.5, 10.0)
         if climate.speed > _MOST_SCALE:
             what = f"'{text}' is hours of a Weibull distribution, and no place is as windy"
             cure = 'give a basic wind with a point, 22.5'

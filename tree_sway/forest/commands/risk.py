@@ -146,7 +146,7 @@ def risk_figure(drawn: list[Row], climate: Climate) -> Figure:
     if any(beyond):
         label = 'beyond the winds that were computed'
         axes.plot([], [], 'o', mfc='white', mec='black', label=label)
-    axes.legend(loc='lower right', fontsize='small')
+    axes.legend(loc='lower left', bbox_to_anchor=(1.0, 0.0), fontsize='small')
     names = [f'{row["name"]}, {row["species"]}' for row in drawn] if len(drawn) <= _NAMED else []
     axes.set_yticks(places[: len(names)], names)
     axes.set(
