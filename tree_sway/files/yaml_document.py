@@ -11,7 +11,6 @@ clearer.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from importlib.resources import files
 import json
 from pathlib import Path
@@ -82,8 +81,6 @@ def read_yaml(
         not a text, nested too deep, or the first violation of the schema; with ``source:line``.
 
     """
-    if not text.strip():
-        raise FormatError('empty', where=source, cure=f'describe {expected} in it')
     try:
         _refuse_unsafe(text, source)
         root = yaml.compose(text, Loader=_LOADER)
@@ -96,7 +93,8 @@ def read_yaml(
             f'not YAML: {str(error).splitlines()[0]}', where=source, cure='restore it from a copy'
         ) from None
     if root is None:
-        raise FormatError('no document', where=source, cure=f'describe {expected} in it')
+        what = 'no document' if text.strip() else 'empty'
+        raise FormatError(what, where=source, cure=f'describe {expected} in it')
     document = YamlDocument(_value(root, schema, schema, source), source, root, schema)
     _check(document)
     return document
@@ -105,24 +103,20 @@ def read_yaml(
 def _refuse_unsafe(text: str, source: str) -> None:
     """Refuse events by which a small file could use up the memory."""
     depth = 0
-    events: Iterator[Any] = yaml.parse(text, Loader=_LOADER)
-    for number, event in enumerate(events):
+    for number, event in enumerate(yaml.parse(text, Loader=_LOADER)):
         depth += isinstance(event, yaml.CollectionStartEvent)
         depth -= isinstance(event, yaml.CollectionEndEvent)
-        what = ''
-        cure = 'write the value itself'
-        if getattr(event, 'anchor', None) is not None:
-            what = 'an anchor or alias'
-        elif getattr(event, 'tag', None) is not None:
-            what = f'a tag {event.tag!r}'
+        if getattr(event, 'anchor', None):
+            what, cure = 'an anchor or alias', 'write the value itself'
+        elif getattr(event, 'tag', None):
+            what, cure = f'a tag {event.tag!r}', 'write the value itself'
         elif depth > _MAX_DEPTH:
-            what = f'nested deeper than {_MAX_DEPTH}'
-            cure = 'write it flatter'
+            what, cure = f'nested deeper than {_MAX_DEPTH}', 'write it flatter'
         elif number > _MAX_EVENTS:
-            what = f'more than {_MAX_EVENTS} keys and values'
-            cure = 'give a table of segments'
-        if what:
-            raise FormatError(what, where=f'{source}:{event.end_mark.line + 1}', cure=cure)
+            what, cure = f'more than {_MAX_EVENTS} keys and values', 'give a table of segments'
+        else:
+            continue
+        raise FormatError(what, where=f'{source}:{event.end_mark.line + 1}', cure=cure)
 
 
 def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
@@ -135,15 +129,14 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
         known = schema.get('properties', {})
         values = dict[str, Any]()
         for key, child in node.value:
-            what = ''
+            where = f'{source}:{key.start_mark.line + 1}'
             if not isinstance(key, yaml.ScalarNode):
-                what, cure = f'{_KINDS[_TYPES[key.id]]} as a key', 'use a word as the key'
-            elif key.value in values:
+                what = f'{_KINDS[_TYPES[key.id]]} as a key'
+                raise FormatError(what, where=where, cure='use a word as the key')
+            if key.value in values:
                 first = _node_at(node, [key.value]).start_mark.line + 1
                 what = f"key '{key.value}' occurs twice, first in line {first}"
-                cure = 'remove one of them'
-            if what:
-                raise FormatError(what, where=f'{source}:{key.start_mark.line + 1}', cure=cure)
+                raise FormatError(what, where=where, cure='remove one of them')
             values[key.value] = _value(child, known.get(key.value, {}), root, source)
         return values
     if isinstance(node, yaml.SequenceNode):

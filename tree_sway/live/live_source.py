@@ -37,31 +37,22 @@ class LiveSource(ABC):
         Its transport, and the reader of its messages.
     log
         Function called with a line of news, from the source's thread.
-    patience
-        Time [s] in each state after which it is told why nothing comes; states without one are
-        not told.
-    silence, longest_pause
+    silence
         As in `Link`.
 
     """
 
-    def __init__(
-        self,
-        source: Source,
-        log: Log,
-        *,
-        patience: Mapping[str, float],
-        silence: float | None = None,
-        longest_pause: float = LONGEST_PAUSE,
-    ) -> None:
+    _patience: Mapping[str, float]
+    """Time [s] in each state after which it is told why nothing comes; in others it is not."""
+    _longest_pause = LONGEST_PAUSE
+
+    def __init__(self, source: Source, log: Log, silence: float | None = None) -> None:
         self.accepted = self.other = 0
         """Numbers of samples, and of messages that are about something else."""
         self._source = source
         self._log = log
-        self._patience = patience
         self._last = ''
         self._expires = -math.inf  # time after which its newest sample no longer counts
-        self._ended = threading.Event()
         self._senders = OneSender()
         self._followed = -math.inf
         self.link = Link(
@@ -69,7 +60,7 @@ class LiveSource(ABC):
             self._receive,
             log,
             silence,
-            longest_pause=longest_pause,
+            longest_pause=self._longest_pause,
             admits=self._admits,
         )
         """The connection, with its state and counts."""
@@ -78,13 +69,11 @@ class LiveSource(ABC):
 
     def start(self) -> None:
         """Start to listen."""
-        self._ended.clear()
         self.link.start()
         threading.Thread(target=self._watch, name='live source', daemon=True).start()
 
     def stop(self) -> None:
         """Stop; the thread ends by itself if it is busy."""
-        self._ended.set()
         self.link.stop()
 
     @property
@@ -159,7 +148,7 @@ class LiveSource(ABC):
         state = ''
         since = 0.0
         told = ''
-        while not self._ended.wait(_LOOK) and not self.accepted:
+        while not self.link.is_stopping and not self.accepted:
             if self.state != state:
                 state = self.state
                 since = time.monotonic()
@@ -167,6 +156,7 @@ class LiveSource(ABC):
             if state != told and waited >= self._patience.get(state, math.inf):
                 told = state
                 self._log(self._news())
+            self.link.pause(_LOOK)
 
     def _news(self) -> str:
         """Return the problem as a line for the terminal."""

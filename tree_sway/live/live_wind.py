@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator, Mapping
 import math
 import threading
 import time
+from typing import ClassVar
 
 import numpy as np
 
@@ -25,15 +26,13 @@ from tree_sway.live.every_other import EveryOther
 from tree_sway.live.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.live.live_source import LiveSource
 from tree_sway.live.recent import RecentSamples
-from tree_sway.live.registry import OpenedSource
+from tree_sway.live.source import Source
 from tree_sway.live.transports.transport import Log, Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
 Sample = tuple[float, Velocity]
 """Time [s] and wind east, north, up [m/s], the way the air goes."""
 
-_PATIENCE = {'waiting': 4.0, 'unknown': 3.0}
-"""Time [s] after which silence, or messages that are not understood, are told."""
 _USUAL_INTERVAL = 60.0
 """Length of a mean [s] until the second one tells it."""
 _GAPS = 5
@@ -56,8 +55,8 @@ class LiveWind(LiveSource):
 
     Parameters
     ----------
-    opened
-        The source.
+    source
+        Its transport, and the reader of its messages.
     log
         Function called with a line of news, from the source's thread.
     taken
@@ -70,27 +69,28 @@ class LiveWind(LiveSource):
 
     """
 
+    _patience: ClassVar = {'waiting': 4.0, 'unknown': 3.0}
+
     def __init__(
         self,
-        opened: OpenedSource,
+        source: Source,
         log: Log,
         *,
         taken: Callable[[Velocity], None] | None = None,
         heard: Callable[[WindReading], None] | None = None,
         silence: float | None = None,
     ) -> None:
-        super().__init__(opened.source, log, patience=_PATIENCE, silence=silence)
-        self.bearing = opened.bearing
+        super().__init__(source, log, silence)
+        self.bearing = source.bearing
         """Direction that a wind without one comes from, clockwise from north [rad]."""
         self.newest: WindReading | None = None
         """Newest reading."""
         self.interval = 0.0
         """Length of the mean that the newest reading is [s]; 0 for the wind of an instant."""
-        self.lacks_direction = opened.is_without_vane
+        self.lacks_direction = source.is_without_vane
         """Whether the newest reading has no direction of its own."""
         self.every_other = EveryOther()
         """Whether its speeds look like those of two senders, which nothing else tells apart."""
-        self._opened = opened
         self._taken = taken
         self._heard = heard
         self._lock = threading.Lock()
@@ -120,7 +120,7 @@ class LiveWind(LiveSource):
     def name(self) -> str:
         """Name of the source for viewers."""
         place = self.newest.place if self.newest is not None else ''
-        return ', '.join(filter(None, (place, self._opened.name)))
+        return ', '.join(filter(None, (place, self._source.name)))
 
     @property
     def age(self) -> float:
@@ -198,7 +198,7 @@ class LiveWind(LiveSource):
             if isinstance(reading, Refusal):
                 cause = reading.reason
             if self.link.refuse(cause) and self.accepted:
-                self._log(f'{self._opened.name}: refused, and counted: {cause}')
+                self._log(f'{self._source.name}: refused, and counted: {cause}')
 
     def _use(self, reading: WindReading) -> None:
         now = time.monotonic()
@@ -229,9 +229,9 @@ class LiveWind(LiveSource):
             text = described(reading, self.bearing)
             self._log(f'wind comes: {text}; {self._gusts_text(reading)}')
         elif was_guess:
-            self._log(f'{self._opened.name}: {self._gusts_text(reading)}')
+            self._log(f'{self._source.name}: {self._gusts_text(reading)}')
         if self.every_other.note(reading.speed):
-            self._log(f'{self._opened.name}: {self.every_other.problem}')
+            self._log(f'{self._source.name}: {self.every_other.problem}')
         if self.is_mean:
             return
         if self._taken is not None:
@@ -249,7 +249,7 @@ class LiveWind(LiveSource):
 
     def _interval(self, reading: WindReading, period: float | None) -> float:
         """Length of the mean that a reading is [s]; 0 for the wind of an instant."""
-        stated = (self._opened.mean, reading.interval, self._source.interval)
+        stated = (self._source.mean, reading.interval, self._source.interval)
         known = [each for each in stated if each is not None]
         self._is_guess = not known and period is None
         usual = _USUAL_INTERVAL if period is None else period

@@ -32,7 +32,10 @@ _LEARNED = {
 }
 """Columns of what was learned, and the attributes of a `LearnedTree`."""
 _IN_USE, _RESIDUAL, _REFUSED, _CHANGE = _OF_SENSOR = (
-    *('in use [-]', 'residual [-]', 'refused', 'frequencies over those before [-]'),
+    'in use [-]',
+    'residual [-]',
+    'refused',
+    'frequencies over those before [-]',
 )
 
 

@@ -54,18 +54,11 @@ def read_netcdf_wind(
     point = map(repr, _point(at))
     cure = 'download it again'
     found = bounded_arrays(_winds_of_netcdf, path, *point, kind='a netCDF file', cure=cure)
-    rows = WindRows(str(path), row_name='sample')
-    velocity = found['velocity']
-    good = np.isfinite(velocity).all(axis=1)
-    for index in np.flatnonzero(~good).tolist():
-        rows.refuse(index + 1, 'no value')
-    rows.time = array('d', found['seconds'][good])
-    rows.velocity = array('d', velocity[good].ravel())
-    rows.number = array('q', (np.flatnonzero(good) + 1).tolist())
-    if 'gust' in found:
-        rows.gust = found['gust'][good]
-    notes = tuple(found['notes'].tolist())
-    record = rows.record(epoch=float(found['epoch']), notes=notes)
+    rows = WindRows(str(path), row_name='sample', gust=found.get('gust'))
+    rows.time = array('d', found['seconds'])
+    rows.velocity = array('d', found['velocity'].ravel())
+    rows.number = array('q', range(1, len(rows.time) + 1))
+    record = rows.record(epoch=float(found['epoch']), notes=tuple(found['notes'].tolist()))
     return filled_means(record, turbulence, seed)
 
 
@@ -74,7 +67,26 @@ def _winds_of_netcdf(path: str, *at: str) -> Arrays:
     from netCDF4 import Dataset
 
     with Dataset(path) as data:
-        yield from _read(data, at)
+        found = {each: _find(data, each) for each in ('time', *_COMPONENTS, *_POLAR, 'gust')}
+        clock = found['time']
+        is_polar = None in [found[each] for each in _COMPONENTS]
+        first, second = (found[each] for each in (_POLAR if is_polar else _COMPONENTS))
+        if None in (clock, first, second):
+            said = [word for each, word in _WORDS.items() if found[each] is None]
+            raise FormatError(
+                f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}',
+                cure='choose the 10 m u and v components of wind, or its speed and direction',
+            )
+        notes, place = _place(data, first, at)
+        one = _series(first, 'speed', clock, place)
+        other = _series(second, 'angle' if is_polar else 'speed', clock, place)
+        components = np.column_stack([one, other, np.zeros(len(one))])
+        yield 'velocity', velocity_from(one, np.degrees(other)) if is_polar else components
+        seconds, epoch = _seconds(clock)
+        yield from (('seconds', seconds), ('epoch', epoch))
+        yield 'notes', np.array(notes, dtype=np.str_)
+        if found['gust'] is not None:
+            yield 'gust', _series(found['gust'], 'speed', clock, place)
 
 
 def _point(at: tuple[str, ...] | None) -> tuple[float, ...]:
@@ -88,29 +100,6 @@ def _point(at: tuple[str, ...] | None) -> tuple[float, ...]:
     if not (abs(latitude) <= 90.0 and abs(longitude) <= 360.0):
         raise ParameterError(f"'{at}' is no place", cure='write at=LATITUDE,LONGITUDE in degrees')
     return latitude, longitude
-
-
-def _read(data: Any, point: Sequence[str]) -> Arrays:
-    found = {each: _find(data, each) for each in ('time', *_COMPONENTS, *_POLAR, 'gust')}
-    clock = found['time']
-    is_polar = None in [found[each] for each in _COMPONENTS]
-    first, second = (found[each] for each in (_POLAR if is_polar else _COMPONENTS))
-    if None in (clock, first, second):
-        said = [word for each, word in _WORDS.items() if found[each] is None]
-        raise FormatError(
-            f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}',
-            cure='choose the 10 m u and v components of wind, or its speed and direction',
-        )
-    notes, place = _place(data, first, point)
-    one = _series(first, 'speed', clock, place)
-    other = _series(second, 'angle' if is_polar else 'speed', clock, place)
-    components = np.column_stack([one, other, np.zeros(len(one))])
-    seconds, epoch = _seconds(clock)
-    yield 'velocity', velocity_from(one, np.degrees(other)) if is_polar else components
-    yield from (('seconds', seconds), ('epoch', epoch))
-    yield 'notes', np.array(notes, dtype=np.str_)
-    if found['gust'] is not None:
-        yield 'gust', _series(found['gust'], 'speed', clock, place)
 
 
 def _find(data: Any, quantity: str) -> Any:

@@ -159,10 +159,11 @@ class WindRows:
         time = np.array(self.time)
         velocity = np.array(self.velocity).reshape(-1, 3)
         velocity = WindConvention(direction_convention, yaw_offset=yaw).velocity(velocity)
-        speed = np.sqrt(np.einsum('ij,ij->i', velocity, velocity))
+        speed = np.linalg.norm(velocity, axis=1)
         good = np.isfinite(time) & (speed <= FASTEST_WIND)
         for index in np.flatnonzero(~good):
             why = f'{speed[index]:.3g} m/s at {time[index]:g} s'
+            why = 'no value' if np.isnan(speed[index]) else why
             self.refuse(self.number[index], why if np.isfinite(time[index]) else 'no time in it')
         rows = np.flatnonzero(good)
         late = ~increasing(time[rows])

@@ -93,8 +93,9 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
         problems = [each.live.problem for each in sensors]
     for table in every:
         table.close()
-    counts = [table.count for table in tables]
-    came = [(sensor, count) for sensor, count in zip(placed, counts, strict=True) if count]
+    came = [
+        (sensor, table.count) for sensor, table in zip(placed, tables, strict=True) if table.count
+    ]
     heard = [sensor for sensor, _ in came]
     write_tree_record(sheet._replace(motion=heard, wind_source=wind.name))
     for sensor, problem in zip(placed, problems, strict=True):

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 import math
 import time
+from typing import ClassVar
 
 from tree_sway.files.wind import Refusal
 from tree_sway.live.live_source import LiveSource
@@ -29,11 +30,8 @@ _SILENT = 5.0
 """Time [s] without a good sample after which a sensor is stale."""
 _INCOMPLETE = 1.0
 """Time [s] without a sample of all quantities after which those that come are taken as all."""
-_PATIENCE = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
-"""Time [s] after which silence, or messages that are not understood, are told."""
 _COUNTED = 40
 """Samples over which the rate is counted."""
-_LONGEST_PAUSE = 2.0
 _LEFT_OUT = 'the tree stood still then, paused or as this machine had too much to do'
 
 
@@ -52,6 +50,9 @@ class LiveMotion(LiveSource):
 
     """
 
+    _patience: ClassVar = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
+    _longest_pause = 2.0
+
     def __init__(
         self,
         source: Source,
@@ -59,7 +60,7 @@ class LiveMotion(LiveSource):
         *,
         heard: Callable[[MotionReading], None] | None = None,
     ) -> None:
-        super().__init__(source, log, patience=_PATIENCE, longest_pause=_LONGEST_PAUSE)
+        super().__init__(source, log)
         self.name = source.name
         """Name of the sensor for viewers."""
         self.quantities: tuple[str, ...] = ()

@@ -18,12 +18,7 @@ from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
-_SHORTEST, _LONGEST = 0.2, 86_400.0
-"""Interval of requests [s]."""
-_OPTIONS = (
-    *('speed', 'direction', 'gust', 'unit', 'every', 'token_file'),
-    *('name', 'mean', 'from_degrees'),
-)
+_OPTIONS = 'speed direction gust unit every token_file name mean from_degrees'.split()
 """Options of ours in a query; others belong to the server."""
 _ALIKE = 0.8
 """Share of common letters from which an option of the query is a misspelt one of ours."""
@@ -55,7 +50,7 @@ def open_source(address: SourceAddress) -> Source:
             _refuse_misspelt(address, name, value)
         address.options = {k: v for k, v in address.options.items() if k in _OPTIONS}
         parts = parts._replace(query=urlencode(theirs))
-    every = address.number('every', 60.0, _SHORTEST, _LONGEST)
+    every = address.number('every', 60.0, 0.2, 86_400.0)
     url = parts._replace(fragment='').geturl()
     transport = HttpPoll(url, every, address.headers())
     interval = every if every >= LEAST_INTERVAL else 0.0

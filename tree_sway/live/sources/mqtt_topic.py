@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from urllib.parse import unquote
 
-from tree_sway.files.wind import bearing_of, Reading, Readings, WindReading
+from tree_sway.files.wind import bearing_of, Readings, WindReading
 from tree_sway.live.readers.instrument_lines import lines_of
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
@@ -63,9 +63,7 @@ class _WithVane:
         if message.origin == self.topic:
             self.bearing = bearing_of(message.data.decode('utf-8', 'replace'))
             return ()
-        return [self._turned(each) for each in self.read(message)]
-
-    def _turned(self, reading: Reading) -> Reading:
-        if not isinstance(reading, WindReading):
-            return reading
-        return replace(reading, bearing=self.bearing)
+        return [
+            replace(each, bearing=self.bearing) if isinstance(each, WindReading) else each
+            for each in self.read(message)
+        ]

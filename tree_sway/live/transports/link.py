@@ -72,13 +72,14 @@ class Link(Worker):
         """Reason of the last failure; empty while there is a connection."""
         self.refused: dict[str, int] = {}
         """Numbers of what was refused, by cause."""
+        self._limit = self.transport.silence if self.silence is None else self.silence
         self._latest = 0.0
         self._pace = Pace()
 
     @property
     def is_over(self) -> bool:
         """Whether the transport is to end: on request, or as nothing came; asked often."""
-        return self._stopping.is_set() or self._is_silent
+        return self.is_stopping or self._is_silent
 
     def opened(self) -> None:
         """Note that the connection is made."""
@@ -118,24 +119,20 @@ class Link(Worker):
         self._stopping.wait(seconds)
 
     @property
-    def _limit(self) -> float:
-        return self.transport.silence if self.silence is None else self.silence
-
-    @property
     def _is_silent(self) -> bool:
         return self.is_up and time.monotonic() - self._latest > self._limit
 
     def _run(self) -> None:
         pause = self.first_pause
         self._pace.begin()
-        while not self._stopping.is_set():
+        while not self.is_stopping:
             before = self.messages
             try:
                 self.transport.listen(self)
                 why = f'nothing for {self._limit:g} s' if self._is_silent else 'it ended'
             except Exception as error:  # an instrument may fail in any way
                 why = failure_text(error)
-            if not self._stopping.is_set() and (self.is_up or why != self.failure):
+            if not self.is_stopping and (self.is_up or why != self.failure):
                 self.log(f'{self.transport}: {why}; trying again')
             self.is_up = False
             self.failure = why
