@@ -131,10 +131,7 @@ def format_of(
 def _is_header_alone(head: str) -> bool:
     """Whether the beginning of a file is one row of cells, none of them a number."""
     _, lines = filled_lines(head.splitlines())
-    if len(lines) != 1:
-        return False
-    has_cells = re.search('[,;\t]', lines[0]) is not None
-    return has_cells and re.search(r'\d', lines[0]) is None
+    return len(lines) == 1 and re.fullmatch(r'\D*[,;\t]\D*', lines[0]) is not None
 
 
 def _is_cloud(head: str) -> bool:

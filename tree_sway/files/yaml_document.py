@@ -21,6 +21,7 @@ import yaml
 
 from tree_sway.errors import FormatError, nearest  # noqa: I100
 from tree_sway.files.text_file import finite
+from tree_sway.tables import table_beside
 
 Schema = dict[str, Any]
 YAML_SUFFIXES = ('.yaml', '.yml', '.json')
@@ -30,10 +31,8 @@ _LOADER: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 _MAX_DEPTH = 16
 _MAX_EVENTS = 600_000
 _TYPES = {'mapping': 'object', 'sequence': 'array', 'scalar': 'number'}
-_KINDS = {'object': 'a mapping', 'array': 'a list', 'string': 'a text', 'number': 'a number',
-          'integer': 'a whole number', 'boolean': 'true or false'}  # fmt: skip
-_LIMITS = {'minimum': 'at least', 'exclusiveMinimum': 'more than', 'maximum': 'at most',
-           'minItems': 'at least', 'maxItems': 'at most', 'maxLength': 'at most'}  # fmt: skip
+_WORDS = {each['key']: each['words'] for each in table_beside(__file__, 'schema_words.csv')}
+"""What types and limits of a schema are called."""
 
 
 def packaged_schema(name: str) -> Schema:
@@ -103,6 +102,7 @@ def read_yaml(
 def _refuse_unsafe(text: str, source: str) -> None:
     """Refuse events by which a small file could use up the memory."""
     depth = 0
+    event: Any
     for number, event in enumerate(yaml.parse(text, Loader=_LOADER)):
         depth += isinstance(event, yaml.CollectionStartEvent)
         depth -= isinstance(event, yaml.CollectionEndEvent)
@@ -131,7 +131,7 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
         for key, child in node.value:
             where = f'{source}:{key.start_mark.line + 1}'
             if not isinstance(key, yaml.ScalarNode):
-                what = f'{_KINDS[_TYPES[key.id]]} as a key'
+                what = f'{_WORDS[_TYPES[key.id]]} as a key'
                 raise FormatError(what, where=where, cure='use a word as the key')
             if key.value in values:
                 first = _node_at(node, [key.value]).start_mark.line + 1
@@ -207,7 +207,7 @@ def _error(document: YamlDocument, error: Any) -> FormatError:
     else:
         node = _node_at(document.root, path)
         cure = _wanted(error.schema, document.schema)
-        what = f'{name} is {_KINDS[_TYPES[node.id]]} of {len(node.value)}'
+        what = f'{name} is {_WORDS[_TYPES[node.id]]} of {len(node.value)}'
         if isinstance(node, yaml.ScalarNode):
             what = f"{name} is '{node.value[:40]}'"
             cure += ', finite, without quotes or unit' * ('number' in cure)
@@ -219,5 +219,5 @@ def _wanted(schema: Schema, root: Schema) -> str:
     """Describe the values that a schema allows."""
     if 'anyOf' in schema:
         return ' or '.join(_wanted(_resolved(each, root), root) for each in schema['anyOf'])
-    limits = [f'{word} {schema[key]}' for key, word in _LIMITS.items() if key in schema]
-    return _KINDS[schema['type']] + (' of ' if limits else '') + ' and '.join(limits)
+    limits = [f'{word} {schema[key]}' for key, word in _WORDS.items() if key in schema]
+    return _WORDS[schema['type']] + (' of ' if limits else '') + ' and '.join(limits)

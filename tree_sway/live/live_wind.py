@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 import math
+from statistics import median_low
 import threading
 import time
 from typing import ClassVar
@@ -97,7 +98,7 @@ class LiveWind(LiveSource):
         self._gusts = GustsAboutMean()
         self._samples = RecentSamples[Sample](_QUEUE)
         self._arrival = -math.inf
-        self._gaps: deque[float] = deque(maxlen=_GAPS)
+        self._gaps = deque[float](maxlen=_GAPS)
         self._blown = -math.inf
         self._is_guess = False
         """Whether the next reading will tell if the newest is a mean."""
@@ -126,9 +127,7 @@ class LiveWind(LiveSource):
     def age(self) -> float:
         """Age of the newest reading [s], since its measurement if it has a time."""
         newest = self.newest
-        if newest is None:
-            return math.inf
-        if newest.time is not None:
+        if newest is not None and newest.time is not None:
             return max(time.time() - newest.time, 0.0)
         return time.monotonic() - self._arrival
 
@@ -219,8 +218,7 @@ class LiveWind(LiveSource):
                 gust = reading.gust if has_gust else None
                 self._gusts.set(now, np.array(velocity), interval, gust)
                 self._blown = max(self._blown, now - 1.0 / RATE)
-                lasts = self._source.lasts
-                self._expires = now - self.age + (_LASTS * interval if lasts is None else lasts)
+                self._expires = now - self.age + (self._source.lasts or _LASTS * interval)
             else:
                 self._expires = now + max(_LIVE_FOR, _LASTS * (period or 0.0))
         if self._heard is not None:
@@ -242,10 +240,10 @@ class LiveWind(LiveSource):
     @property
     def _period(self) -> float | None:
         """Usual time between two messages [s]; None while it is not known."""
-        gaps = sorted(self._gaps)
+        gaps = self._gaps
         if not gaps or (len(gaps) == 1 and gaps[0] > _LONGEST_SINGLE):
             return None
-        return gaps[(len(gaps) - 1) // 2]
+        return median_low(gaps)
 
     def _interval(self, reading: WindReading, period: float | None) -> float:
         """Length of the mean that a reading is [s]; 0 for the wind of an instant."""

@@ -27,7 +27,7 @@ class OneSender:
     def __init__(self) -> None:
         self.current = ''
         """Origin of the messages that are followed."""
-        self.refused: dict[str, int] = {}
+        self.refused = dict[str, int]()
         """Numbers of messages that were refused, by the first origins that occur."""
         self.total_refused = 0
         """Number of all messages that were refused."""

@@ -105,7 +105,7 @@ class TreeHistory:
         self._path: Path = path_of(path)
         self._names = list(names)
         self._began: float | None = None
-        self._noted: list[dict[str, float]] = []
+        self._noted = list[dict[str, float]]()
 
     def note(self, twin: ObservedTree, now: float) -> bool:
         """

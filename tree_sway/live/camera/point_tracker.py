@@ -100,7 +100,7 @@ class PointTracker:
         seen, is_seen, _ = follow(self._first, grey, self._found, self._last.copy(), **self._flow)
         back, is_back, _ = follow(grey, self._first, seen, self._found.copy(), **self._flow)
         missed = np.linalg.norm(back - self._found, axis=2).ravel()
-        is_good = (is_seen.ravel() == 1) & (is_back.ravel() == 1) & (missed < _RETURNED)
+        is_good = ((is_seen & is_back).ravel() == 1) & (missed < _RETURNED)
         # A lost point is sought where those about it have gone: by the middle of all.
         moved = np.median((seen - self._found)[is_good], axis=0) if is_good.any() else 0.0
         self._last = np.where(is_good[:, None, None], seen, self._found + moved).astype(np.float32)

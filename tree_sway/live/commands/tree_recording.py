@@ -90,7 +90,7 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
             wind_table.wind = wind
             wait(end, lambda: any(each.failure for each in every))
             wind_problem = wind.problem
-        problems = [each.live.problem for each in sensors]
+        problems = {name: each.live.problem for name, each in feed.sensors.items()}
     for table in every:
         table.close()
     came = [
@@ -98,13 +98,13 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
     ]
     heard = [sensor for sensor, _ in came]
     write_tree_record(sheet._replace(motion=heard, wind_source=wind.name))
-    for sensor, problem in zip(placed, problems, strict=True):
+    for name, problem in problems.items():
         if problem:
-            say(f'{sensor.source} at {sensor.at}: {problem}')
+            say(f'{name}: {problem}')
     if not wind_table.count:
         raise TransportError(wind_problem or 'no wind came', where='--sensor')
     if not came:
-        raise TransportError('; '.join(problems) or 'no motion came', where='--motion')
+        raise TransportError('; '.join(problems.values()) or 'no motion came', where='--motion')
     for table in every:
         if table.count:
             table.say_short(seconds)

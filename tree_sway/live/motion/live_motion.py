@@ -169,8 +169,5 @@ class LiveMotion(LiveSource):
         return self.link.refuse(cause, count)
 
 
-_WORDS = {'rate': 'angular rate'}
-
-
 def _words(quantities: Sequence[str]) -> str:
-    return ' and '.join(_WORDS.get(name, name) for name in quantities)
+    return ' and '.join(quantities).replace('rate', 'angular rate')

@@ -91,6 +91,7 @@ class _Sensor:
         return bool(known)
 
 
+@dataclass
 class PhyphoxPhone(LoopTransport):
     """
     Transport of the answers of a phone, and reader of them.
@@ -104,12 +105,10 @@ class PhyphoxPhone(LoopTransport):
 
     """
 
+    url: str
+    every: float
+    _sensors: list[_Sensor] = field(default_factory=list, init=False)
     silence = 10.0
-
-    def __init__(self, url: str, every: float) -> None:
-        self.url = url
-        self._every = every
-        self._sensors: list[_Sensor] = []
 
     def __str__(self) -> str:
         """Return its address."""
@@ -134,7 +133,7 @@ class PhyphoxPhone(LoopTransport):
                 if any([each.note(answer) for each in self._sensors]):
                     heard = asked
                     receiver.deliver(Message(json.dumps(answer).encode(), '/get'))
-                await asyncio.sleep(max(self._every - (loop.time() - asked), 0.0))
+                await asyncio.sleep(max(self.every - (loop.time() - asked), 0.0))
 
     async def _look(self, session: aiohttp.ClientSession) -> None:
         """Take the newest sample that is there now as the one to go on from."""
@@ -202,7 +201,7 @@ def _joined(force: _Sensor, rate: _Sensor) -> list[MotionReading]:
 
 def _sensors_of(config: Any) -> list[_Sensor]:
     """Return the sensors of an experiment by ``/config``; a `ConnectionError` without any."""
-    sources: dict[str, Mapping[str, Any]] = {}
+    sources = dict[str, Mapping[str, Any]]()
     for each in map(object_of, list_of(value_at(config, 'inputs'))):
         named = ChainMap(*map(object_of, list_of(each.get('outputs'))))
         if {'x', 'y', 'z', 't'} <= named.keys():

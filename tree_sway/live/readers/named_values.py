@@ -113,13 +113,12 @@ _Found = tuple[Any, str]
 def _by_name(leaves: Mapping[str, str], quantity: str, common: str) -> _Found:
     """Find a quantity by its usual names, with the unit beside it, in its name, or of all."""
     # Longer names are none, and would stay in the cache.
-    last_of = {name: name.rpartition('.')[2] for name in leaves if len(name) <= _LONGEST}
-    ranks = {name: rank_of(name, quantity) for name, last in last_of.items() if last[1:]}
+    looked_at = [name for name in leaves if len(name) <= _LONGEST and name.rpartition('.')[2][1:]]
     # A boat has a speed as well as a wind_speed.
     known = [
         ('wind' not in name.lower(), rank, name.count('.'), name)
-        for name, rank in ranks.items()
-        if rank is not None
+        for name in looked_at
+        if (rank := rank_of(name, quantity)) is not None
     ]
     if not known:
         return None, ''

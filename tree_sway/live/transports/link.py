@@ -70,7 +70,7 @@ class Link(Worker):
         self.connections = self.messages = 0
         self.failure = ''
         """Reason of the last failure; empty while there is a connection."""
-        self.refused: dict[str, int] = {}
+        self.refused = dict[str, int]()
         """Numbers of what was refused, by cause."""
         self._limit = self.transport.silence if self.silence is None else self.silence
         self._latest = 0.0

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of a WebSocket, after a request that is sent first."""
+"""Texts of a WebSocket, after a request that is sent first."""
 
 from __future__ import annotations
 
@@ -45,6 +45,4 @@ class WebSocket(LoopTransport):
             async for message in socket:
                 if message.type is aiohttp.WSMsgType.TEXT:
                     receiver.deliver(Message(message.data.encode()))
-                elif message.type is aiohttp.WSMsgType.BINARY:
-                    receiver.deliver(Message(message.data))
             raise ConnectionError('closed by the other side')
