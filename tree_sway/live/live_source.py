@@ -13,6 +13,7 @@ from collections.abc import Mapping
 import math
 import threading
 import time
+from typing import ClassVar
 
 from tree_sway.errors import shown
 from tree_sway.live.one_sender import OneSender
@@ -42,7 +43,7 @@ class LiveSource(ABC):
 
     """
 
-    _patience: Mapping[str, float]
+    _patience: ClassVar[Mapping[str, float]]
     """Time [s] in each state after which it is told why nothing comes; in others it is not."""
     _longest_pause = LONGEST_PAUSE
 
@@ -124,7 +125,7 @@ class LiveSource(ABC):
         """Number of what was refused, with the first cause, to stand behind a count of samples."""
         if not self.refused:
             return ''
-        return f', {sum(self.refused.values())} refused: {next(iter(self.refused))}'
+        return f', {self.refused.total()} refused: {next(iter(self.refused))}'
 
     def _why_nothing(self) -> str:
         """Why no sample was accepted so far."""
@@ -133,7 +134,7 @@ class LiveSource(ABC):
             return f'no connection to {link.transport}: {link.failure or "not yet"}'
         if not link.messages and not self.refused:
             return f'listening to {link.transport}: nothing has come yet'
-        number = max(link.messages, sum(self.refused.values()))
+        number = max(link.messages, self.refused.total())
         came = f'{number} {self._source.messages} came'
         if self.refused:
             causes = ', '.join(list(self.refused)[:_SHOWN_CAUSES])

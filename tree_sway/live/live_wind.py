@@ -28,7 +28,7 @@ from tree_sway.live.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.live.live_source import LiveSource
 from tree_sway.live.recent import RecentSamples
 from tree_sway.live.source import Source
-from tree_sway.live.transports.transport import Log, Message
+from tree_sway.live.transports.transport import ignore, Log, Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
 Sample = tuple[float, Velocity]
@@ -78,7 +78,7 @@ class LiveWind(LiveSource):
         log: Log,
         *,
         taken: Callable[[Velocity], None] | None = None,
-        heard: Callable[[WindReading], None] | None = None,
+        heard: Callable[[WindReading], None] = ignore,
         silence: float | None = None,
     ) -> None:
         super().__init__(source, log, silence)
@@ -221,8 +221,7 @@ class LiveWind(LiveSource):
                 self._expires = now - self.age + (self._source.lasts or _LASTS * interval)
             else:
                 self._expires = now + max(_LIVE_FOR, _LASTS * (period or 0.0))
-        if self._heard is not None:
-            self._heard(reading)
+        self._heard(reading)
         if is_first:
             text = described(reading, self.bearing)
             self._log(f'wind comes: {text}; {self._gusts_text(reading)}')

@@ -19,6 +19,7 @@ from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files.commands import source_name
 from tree_sway.files.wind import WindRecord
 from tree_sway.live.commands.record_clock import wait
+from tree_sway.live.transports.transport import ignore
 
 if TYPE_CHECKING:
     from tree_sway.files.wind import WindReading
@@ -48,7 +49,7 @@ say_sensor = partial(say, kind='sensor')
 
 @contextmanager
 def listening(
-    arguments: argparse.Namespace, heard: Callable[[WindReading], None] | None = None
+    arguments: argparse.Namespace, heard: Callable[[WindReading], None] = ignore
 ) -> Iterator[LiveWind]:
     """
     Listen to the source of ``--sensor``, and end at once.

@@ -118,13 +118,12 @@ class MotionTable(RowFile):
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
-        self._folder = path.parent
         self._clock = RecordClock()
         self._names: tuple[str, ...] = ()
 
     def take(self, sample: MotionReading) -> None:
         """Write a sample, once there is its folder; called by the sensor's thread."""
-        if not self._folder.is_dir():
+        if not self._path.parent.is_dir():
             return
         if not self._names:
             self._names = tuple(name for name in _COLUMNS if getattr(sample, name) is not None)

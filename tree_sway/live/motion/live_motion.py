@@ -21,7 +21,7 @@ from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.motion.sender_clock import SenderClock
 from tree_sway.live.recent import RecentSamples
 from tree_sway.live.source import Source
-from tree_sway.live.transports.transport import Log, Message
+from tree_sway.live.transports.transport import ignore, Log, Message
 
 SLOWEST = 5.0
 """Least number of samples per second [Hz] that follows a tree."""
@@ -58,7 +58,7 @@ class LiveMotion(LiveSource):
         source: Source,
         log: Log,
         *,
-        heard: Callable[[MotionReading], None] | None = None,
+        heard: Callable[[MotionReading], None] = ignore,
     ) -> None:
         super().__init__(source, log)
         self.name = source.name
@@ -70,6 +70,8 @@ class LiveMotion(LiveSource):
         self._heard = heard
         self._clock = SenderClock(source.ticks)
         self._samples = RecentSamples[MotionReading](_QUEUE, _COUNTED)
+        self.drain = self._samples.drain
+        """Returns the samples since the last call, up to a time; all of `time.monotonic` [s]."""
         self._sent = self._refused_at = -math.inf
         self._cause = ''
 
@@ -106,10 +108,6 @@ class LiveMotion(LiveSource):
         if self.left_out:
             told.append(f'{self.left_out} samples were refused: {_LEFT_OUT}')
         return '; '.join(filter(None, told))
-
-    def drain(self, until: float = math.inf) -> list[MotionReading]:
-        """Return the samples since the last call, up to a time; all of `time.monotonic` [s]."""
-        return self._samples.drain(until)
 
     def _news(self) -> str:
         return f'{self.name}: {self.problem}'
@@ -160,8 +158,7 @@ class LiveMotion(LiveSource):
                 self.quantities = each.quantities
                 self._log(f'{self.name}: samples of {_words(self.quantities)} come')
             self._samples.add(at, sample)
-            if self._heard is not None:
-                self._heard(sample)
+            self._heard(sample)
 
     def _refuse(self, cause: str, count: int = 1) -> bool:
         """Count what is refused; return whether its cause is new."""

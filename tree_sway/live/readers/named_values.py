@@ -96,10 +96,10 @@ def names_of(address: SourceAddress) -> WindNames:
 
     Raises a `ParameterError` for text that is no path.
     """
-    paths = [address.text_of(each) for each in ('speed', 'direction', 'gust')]
-    for path in filter(None, paths):
+    speed, direction, gust = map(address.text_of, ('speed', 'direction', 'gust'))
+    for path in filter(None, (speed, direction, gust)):
         steps_of(path)
-    return WindNames(*paths, address.text_of('unit'))
+    return WindNames(speed, direction, gust, address.text_of('unit'))
 
 
 _NO_DIRECTION = ('', 'VRB')

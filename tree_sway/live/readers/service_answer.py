@@ -20,7 +20,6 @@ from tree_sway.live.readers.json_path import parse_json, steps_of, time_of, valu
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.transports.transport import Message
 
-_WIND = ('speed', 'direction', 'gust')
 _ABOUT = ('time', 'lasting', 'station')
 """Paths of the time of the wind, of the length of its mean [s] and of the name of a station."""
 
@@ -28,7 +27,7 @@ _ABOUT = ('time', 'lasting', 'station')
 def service_reader(known: Mapping[str, Any]) -> Callable[[Message], Readings]:
     """Return the reader of a service of a row; its reason is the refusal of one without a wind."""
     kind: str = known['name']
-    names = WindNames(*(known[each] for each in _WIND), known['unit'])
+    names = WindNames(known['speed'], known['direction'], known['gust'], known['unit'])
 
     def read(message: Message) -> Readings:
         document = parse_json(message.data)

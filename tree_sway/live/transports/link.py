@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 import time
@@ -70,7 +71,7 @@ class Link(Worker):
         self.connections = self.messages = 0
         self.failure = ''
         """Reason of the last failure; empty while there is a connection."""
-        self.refused = dict[str, int]()
+        self.refused = Counter[str]()
         """Numbers of what was refused, by cause."""
         self._limit = self.transport.silence if self.silence is None else self.silence
         self._latest = 0.0
@@ -111,7 +112,7 @@ class Link(Worker):
         if is_new and len(self.refused) >= _MOST_CAUSES:
             is_new = False
             cause = 'other causes'
-        self.refused[cause] = self.refused.get(cause, 0) + count
+        self.refused[cause] += count
         return is_new
 
     def pause(self, seconds: float) -> None:
