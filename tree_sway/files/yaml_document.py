@@ -140,7 +140,7 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
             values[key.value] = _value(child, known.get(key.value, {}), root, source)
         return values
     if isinstance(node, yaml.SequenceNode):
-        inside = _resolved(schema.get('items', {}), root)
+        inside = schema.get('items', {})
         return [_value(child, inside, root, source) for child in node.value]
     if schema.get('type') == 'string' or node.style not in (None, '', 'plain'):
         return node.value

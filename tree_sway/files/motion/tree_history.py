@@ -9,7 +9,6 @@ import csv
 from datetime import datetime, timezone
 import io
 import os
-from pathlib import Path
 
 import numpy as np
 
@@ -102,7 +101,7 @@ class TreeHistory:
 
     def __init__(self, path: str, names: Sequence[str]) -> None:
         refuse_no_history(path, names)
-        self._path: Path = path_of(path)
+        self._path = path_of(path)
         self._names = list(names)
         self._began: float | None = None
         self._noted = list[dict[str, float]]()

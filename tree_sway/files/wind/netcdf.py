@@ -58,12 +58,12 @@ def read_netcdf_wind(
     rows.time = array('d', found['seconds'])
     rows.velocity = array('d', found['velocity'].ravel())
     rows.number = array('q', range(1, len(rows.time) + 1))
-    record = rows.record(epoch=float(found['epoch']), notes=tuple(found['notes'].tolist()))
+    record = rows.record(epoch=float(found['epoch']), notes=(str(found['note']),))
     return filled_means(record, turbulence, seed)
 
 
 def _winds_of_netcdf(path: str, *at: str) -> Arrays:
-    """Yield velocity, seconds after the first, gust where there is one, epoch and notes."""
+    """Yield velocity, seconds after the first, gust where there is one, epoch and a note."""
     from netCDF4 import Dataset
 
     with Dataset(path) as data:
@@ -77,14 +77,15 @@ def _winds_of_netcdf(path: str, *at: str) -> Arrays:
                 f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}',
                 cure='choose the 10 m u and v components of wind, or its speed and direction',
             )
-        notes, place = _place(data, first, at)
+        note, place = _place(data, first, at)
         one = _series(first, 'speed', clock, place)
         other = _series(second, 'angle' if is_polar else 'speed', clock, place)
         components = np.column_stack([one, other, np.zeros(len(one))])
         yield 'velocity', velocity_from(one, np.degrees(other)) if is_polar else components
         seconds, epoch = _seconds(clock)
-        yield from (('seconds', seconds), ('epoch', epoch))
-        yield 'notes', np.array(notes, dtype=np.str_)
+        yield 'seconds', seconds
+        yield 'epoch', epoch
+        yield 'note', note
         if found['gust'] is not None:
             yield 'gust', _series(found['gust'], 'speed', clock, place)
 
@@ -113,8 +114,8 @@ def _find(data: Any, quantity: str) -> Any:
     return data.variables[min(ranks)[2]] if ranks else None
 
 
-def _place(data: Any, variable: Any, point: Sequence[str]) -> tuple[list[str], dict[str, int]]:
-    """Index of each dimension at a point, and a note of where that is."""
+def _place(data: Any, variable: Any, point: Sequence[str]) -> tuple[str, dict[str, int]]:
+    """Note of where a point is, empty without a grid, and index of each dimension there."""
     chosen = dict[str, int]()
     said = list[str]()
     for axis, quantity in enumerate(('latitude', 'longitude')):
@@ -124,8 +125,8 @@ def _place(data: Any, variable: Any, point: Sequence[str]) -> tuple[list[str], d
             apart = np.abs((degrees - wanted + 180.0) % 360.0 - 180.0)
             chosen[name] = int(np.argmin(apart))
             said.append(f'{quantity} {degrees[chosen[name]]:g}')
-    grid = f'the point at {", ".join(said)}'
-    return ([f'{grid}; at=LATITUDE,LONGITUDE chooses another'] if said else []), chosen
+    note = f'the point at {", ".join(said)}; at=LATITUDE,LONGITUDE chooses another'
+    return note * bool(said), chosen
 
 
 def _series(variable: Any, kind: str, clock: Any, place: dict[str, int]) -> Floats:

@@ -95,14 +95,12 @@ class InstrumentLines:
         lines = message.data.decode('utf-8', 'replace').splitlines()
         if len(lines) > _MOST_LINES:
             found.append(Refusal('lines', f'more than {_MOST_LINES} lines in a message'))
-        for line in lines[:_MOST_LINES]:
-            if not line.strip():
-                continue
+        for line in filter(str.strip, lines[:_MOST_LINES]):
             for each in self._read(line):
                 is_good = isinstance(each, WindReading) and is_wind(each.speed, each.up, 0.0)
                 if is_good and not self.reading:
                     self.found = each.kind
-                if not self.reading or each.kind == self.reading:
+                if self.reading in ('', each.kind):
                     found.append(each)
         return found
 
