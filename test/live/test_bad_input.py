@@ -22,11 +22,11 @@ from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.files.wind import Refusal, WindReading
 from tree_sway.live import sources
 from tree_sway.live.readers.instrument_lines import InstrumentLines
-from tree_sway.live.readers.json_path import JsonPath, parse_json
+from tree_sway.live.readers.json_path import parse_json, steps_of
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.signalk import SignalKWind
 from tree_sway.live.readers.weatherlink import read_conditions
-from tree_sway.live.registry import open_source, source_kinds
+from tree_sway.live.registry import open_source, SOURCE_KINDS
 from tree_sway.live.sources.ecowitt import read_upload
 from tree_sway.live.transports.transport import Message
 
@@ -34,13 +34,13 @@ READERS = {
     'lines': lambda: InstrumentLines(),
     'named lines': lambda: InstrumentLines(columns=('direction', 'speed')),
     'upload': lambda: read_upload,
-    'METAR': lambda: open_source('metar:EDDB').source.read,
-    'Open-Meteo': lambda: open_source('open-meteo:52,13').source.read,
+    'METAR': lambda: open_source('metar:EDDB').read,
+    'Open-Meteo': lambda: open_source('open-meteo:52,13').read,
     'WeatherLink': lambda: read_conditions,
     'Signal K': lambda: SignalKWind(),
-    'Tempest': lambda: open_source('tempest').source.read,
-    'Modbus': lambda: open_source('modbus:host?speed=0&direction=3').source.read,
-    'JSON': lambda: open_source('http://host/?speed=a.b').source.read,
+    'Tempest': lambda: open_source('tempest').read,
+    'Modbus': lambda: open_source('modbus:host?speed=0&direction=3').read,
+    'JSON': lambda: open_source('http://host/?speed=a.b').read,
 }
 #: Parts of messages, from which the wrong ones are put together.
 PIECES = [
@@ -133,7 +133,7 @@ def test_a_wind_that_cannot_be_used_is_refused_with_its_reason(
 
 
 def test_an_unknown_unit_is_refused() -> None:
-    read = open_source('http://host/?speed=v&unit=u').source.read
+    read = open_source('http://host/?speed=v&unit=u').read
     (reading,) = read(Message(b'{"v": 5, "u": "beaufort"}'))
     assert isinstance(reading, Refusal)
     assert 'beaufort' in reading.reason
@@ -150,7 +150,7 @@ def test_deep_and_wide_json_takes_no_time() -> None:
 @pytest.mark.parametrize('text', ['', '.', 'a.', '[x]', 'a[', 'a..b'])
 def test_what_is_no_path_is_refused(text: str) -> None:
     with pytest.raises(ParameterError, match='is no path'):
-        JsonPath(text)
+        steps_of(text)
 
 
 @pytest.mark.parametrize(
@@ -204,20 +204,22 @@ def test_a_wrong_address_is_refused_in_words(address: str, message: str) -> None
 
 @given(st.text(max_size=60))
 def test_no_text_breaks_the_registry(text: str) -> None:
-    for kind in source_kinds():
-        for address in (text, f'{kind.schemes[0]}:{text}', f'{kind.schemes[0]}://{text}'):
+    for kind in SOURCE_KINDS:
+        scheme = kind['schemes'].split()[0]
+        for address in (text, f'{scheme}:{text}', f'{scheme}://{text}'):
             with suppress(TreeSwayError):
                 open_source(address)
 
 
 def test_every_module_of_sources_is_in_their_table() -> None:
     modules = {each.stem for each in Path(sources.__file__).parent.glob('[!_]*.py')}
-    assert modules == {kind.module for kind in source_kinds()}
+    assert modules == {kind['module'] for kind in SOURCE_KINDS}
 
 
 def test_every_form_in_the_help_opens() -> None:
-    for kind in source_kinds():
-        text = kind.form.replace('PORT', '8080').replace(':port', ':8080').replace('PATH', 'a.b')
+    for kind in SOURCE_KINDS:
+        text = kind['form'].replace('PORT', '8080').replace(':port', ':8080')
+        text = text.replace('PATH', 'a.b')
         text = text.replace('LAT,LON', '52.5,13.4').replace('ICAO', 'EDDB')
         assert open_source(text).name
 
@@ -255,7 +257,7 @@ def test_a_speed_without_a_unit_is_told_once(hear, send, port) -> None:
         lambda: send(port, b'{"wind_speed": 5.3, "wind_direction": 270}'),
     )
     assert sum('taken in m/s' in said and 'unit=km/h' in said for said in heard.said) == 1
-    read = open_source('udp:5006?unit=m/s').source.read
+    read = open_source('udp:5006?unit=m/s').read
     (reading,) = read(Message(b'{"wind_speed": 5.3, "wind_direction": 270}'))
     assert isinstance(reading, WindReading)
     assert not reading.assumed
@@ -360,9 +362,9 @@ def test_a_peer_that_never_ends_a_line_takes_no_memory(hear) -> None:
 
 def test_a_password_is_in_no_text(hear) -> None:
     opened = open_source('mqtt://me:secret@127.0.0.1:1/t')
-    texts: list[Any] = [opened.source.transport, repr(opened.source.transport), opened.name]
+    texts: list[Any] = [opened.transport, repr(opened.transport), opened.name]
     opened = open_source('http://me:secret@127.0.0.1:1/x?key=secret')
-    texts += [opened.source.transport, opened.name]
+    texts += [opened.transport, opened.name]
     assert not [text for text in texts if 'secret' in str(text)]
 
 
@@ -401,7 +403,7 @@ def test_a_key_in_the_address_is_in_no_failure(hear, serve, answer: str, said: s
 def test_what_is_assumed_of_numbers_is_told_with_its_option(
     options: str, line: bytes, words: list[str]
 ) -> None:
-    (reading,) = open_source(f'udp:5006{options}').source.read(Message(line))
+    (reading,) = open_source(f'udp:5006{options}').read(Message(line))
     assert isinstance(reading, WindReading)
     assert all(each in reading.assumed for each in words)
     assert reading.assumed.count('taken') == len(words)
@@ -414,7 +416,7 @@ def test_numbers_by_order_are_told_once(hear, send, port) -> None:
 
 
 def test_fewer_numbers_than_columns_are_refused() -> None:
-    read = open_source('udp:5006?columns=-,speed,-').source.read
+    read = open_source('udp:5006?columns=-,speed,-').read
     assert [each.kind for each in read(Message(b'1,5.3')) if isinstance(each, WindReading)]
     (refusal,) = read(Message(b'5.3'))
     assert isinstance(refusal, Refusal)

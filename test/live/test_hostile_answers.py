@@ -201,7 +201,7 @@ def test_no_delta_or_report_breaks_a_reader(seed: int) -> None:
     rng = random.Random(seed)
     wind = 'environment.wind.'
     read = SignalKWind()
-    read_reports = open_source('metar:EDDB').source.read
+    read_reports = open_source('metar:EDDB').read
 
     def any_of(*others: Any) -> Any:
         return rng.choice([*WORDS, *others])

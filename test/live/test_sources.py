@@ -387,7 +387,7 @@ def test_a_signal_k_server_sways_a_tree(hear, port, sways):
 def test_a_register_without_a_value_is_no_wind(words: tuple[int, int]) -> None:
     """Scales may bring the word of no value to a wind, and to degrees."""
     options = 'speed=0&direction=1&scale=0.001&direction_scale=0.01'
-    source = open_source(f'modbus:127.0.0.1?{options}').source
+    source = open_source(f'modbus:127.0.0.1?{options}')
     (found,) = source.read(Message(struct.pack('>HH', *words)))
     assert isinstance(found, Refusal)
     (good,) = source.read(Message(struct.pack('>HH', 5300, 27000)))

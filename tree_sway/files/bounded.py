@@ -117,7 +117,7 @@ def _main(*words: str) -> None:
 
 def _answer(to: IO[bytes], module: str, name: str, path: str, *words: str) -> None:
     """Write the arrays of a function of a module; end the program with the error it raises."""
-    found: dict[str, Any] = {}
+    found = dict[str, Any]()
     try:
         for each, array in getattr(import_module(module), name)(path, *words):
             found[each] = array

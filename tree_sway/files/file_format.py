@@ -103,13 +103,12 @@ def format_of(
         If no format has that name.
 
     """
-    names = ', '.join(each.name for each in formats)
-    wanted = name or (folder if folder and path.is_dir() else None)
-    if wanted is not None:
-        for known in formats:
-            if known.name == wanted:
-                return known
-        raise ParameterError(f"unknown {kind} format '{wanted}'", cure=f'use {names}')
+    by_name = {each.name: each for each in formats}
+    names = ', '.join(by_name)
+    if wanted := name or (folder if folder and path.is_dir() else ''):
+        if wanted not in by_name:
+            raise ParameterError(f"unknown {kind} format '{wanted}'", cure=f'use {names}')
+        return by_name[wanted]
     head = read_head(path) if head is None else head
     what, cure = foreign_file(path, head or ' ')
     if what:
@@ -125,16 +124,13 @@ def format_of(
         return of_suffix[0]
     if _is_header_alone(head):
         raise FormatError('a header and no rows', cure='write rows below its header')
-    raise _unknown(path, kind, names)
+    raise _unknown(path, head, kind, names)
 
 
 def _is_header_alone(head: str) -> bool:
     """Whether the beginning of a file is one row of cells, none of them a number."""
     _, lines = filled_lines(head.splitlines())
-    if len(lines) != 1:
-        return False
-    has_cells = re.search('[,;\t]', lines[0]) is not None
-    return has_cells and re.search(r'\d', lines[0]) is None
+    return len(lines) == 1 and re.fullmatch(r'\D*[,;\t]\D*', lines[0]) is not None
 
 
 def _is_cloud(head: str) -> bool:
@@ -143,18 +139,16 @@ def _is_cloud(head: str) -> bool:
     return len(lines) == _POINTS and all(map(_POINT.fullmatch, lines))
 
 
-def _unknown(path: Path, kind: str, names: str) -> FormatError:
+def _unknown(path: Path, head: str, kind: str, names: str) -> FormatError:
     """Return the error for a file of no format: what it is, if its suffix tells, or its kind."""
     what, cure = foreign_file(path)
+    if not what and kind == 'tree' and _is_cloud(head):
+        what, cure = foreign_file(Path('cloud.las'))
     if what:
         cures = filter(None, (cure, f'formats that are read: {names}'))
         return FormatError(f'{what}, not a {kind}', cure='; '.join(cures))
     cure = f'give one of {names}, or give its format'
-    head = read_head(path) if kind == 'tree' else ''
-    if _is_cloud(head):
-        what, cure = foreign_file(Path('cloud.las'))
-        return FormatError(f'{what}, not a {kind}', cure=cure)
-    if head:
+    if head and kind == 'tree':
         cells = re.split('[,;\t]', head.partition('\n')[0])
         names_trees = any(is_named(cell, *_OF_TREES) for cell in cells)
         need = (

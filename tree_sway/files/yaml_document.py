@@ -11,7 +11,6 @@ clearer.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from importlib.resources import files
 import json
 from pathlib import Path
@@ -22,6 +21,7 @@ import yaml
 
 from tree_sway.errors import FormatError, nearest  # noqa: I100
 from tree_sway.files.text_file import finite
+from tree_sway.tables import table_beside
 
 Schema = dict[str, Any]
 YAML_SUFFIXES = ('.yaml', '.yml', '.json')
@@ -31,10 +31,8 @@ _LOADER: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 _MAX_DEPTH = 16
 _MAX_EVENTS = 600_000
 _TYPES = {'mapping': 'object', 'sequence': 'array', 'scalar': 'number'}
-_KINDS = {'object': 'a mapping', 'array': 'a list', 'string': 'a text', 'number': 'a number',
-          'integer': 'a whole number', 'boolean': 'true or false'}  # fmt: skip
-_LIMITS = {'minimum': 'at least', 'exclusiveMinimum': 'more than', 'maximum': 'at most',
-           'minItems': 'at least', 'maxItems': 'at most', 'maxLength': 'at most'}  # fmt: skip
+_WORDS = {each['key']: each['words'] for each in table_beside(__file__, 'schema_words.csv')}
+"""What types and limits of a schema are called."""
 
 
 def packaged_schema(name: str) -> Schema:
@@ -82,8 +80,6 @@ def read_yaml(
         not a text, nested too deep, or the first violation of the schema; with ``source:line``.
 
     """
-    if not text.strip():
-        raise FormatError('empty', where=source, cure=f'describe {expected} in it')
     try:
         _refuse_unsafe(text, source)
         root = yaml.compose(text, Loader=_LOADER)
@@ -96,7 +92,8 @@ def read_yaml(
             f'not YAML: {str(error).splitlines()[0]}', where=source, cure='restore it from a copy'
         ) from None
     if root is None:
-        raise FormatError('no document', where=source, cure=f'describe {expected} in it')
+        what = 'no document' if text.strip() else 'empty'
+        raise FormatError(what, where=source, cure=f'describe {expected} in it')
     document = YamlDocument(_value(root, schema, schema, source), source, root, schema)
     _check(document)
     return document
@@ -105,24 +102,21 @@ def read_yaml(
 def _refuse_unsafe(text: str, source: str) -> None:
     """Refuse events by which a small file could use up the memory."""
     depth = 0
-    events: Iterator[Any] = yaml.parse(text, Loader=_LOADER)
-    for number, event in enumerate(events):
+    event: Any
+    for number, event in enumerate(yaml.parse(text, Loader=_LOADER)):
         depth += isinstance(event, yaml.CollectionStartEvent)
         depth -= isinstance(event, yaml.CollectionEndEvent)
-        what = ''
-        cure = 'write the value itself'
-        if getattr(event, 'anchor', None) is not None:
-            what = 'an anchor or alias'
-        elif getattr(event, 'tag', None) is not None:
-            what = f'a tag {event.tag!r}'
+        if getattr(event, 'anchor', None):
+            what, cure = 'an anchor or alias', 'write the value itself'
+        elif getattr(event, 'tag', None):
+            what, cure = f'a tag {event.tag!r}', 'write the value itself'
         elif depth > _MAX_DEPTH:
-            what = f'nested deeper than {_MAX_DEPTH}'
-            cure = 'write it flatter'
+            what, cure = f'nested deeper than {_MAX_DEPTH}', 'write it flatter'
         elif number > _MAX_EVENTS:
-            what = f'more than {_MAX_EVENTS} keys and values'
-            cure = 'give a table of segments'
-        if what:
-            raise FormatError(what, where=f'{source}:{event.end_mark.line + 1}', cure=cure)
+            what, cure = f'more than {_MAX_EVENTS} keys and values', 'give a table of segments'
+        else:
+            continue
+        raise FormatError(what, where=f'{source}:{event.end_mark.line + 1}', cure=cure)
 
 
 def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
@@ -135,19 +129,18 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
         known = schema.get('properties', {})
         values = dict[str, Any]()
         for key, child in node.value:
-            what = ''
+            where = f'{source}:{key.start_mark.line + 1}'
             if not isinstance(key, yaml.ScalarNode):
-                what, cure = f'{_KINDS[_TYPES[key.id]]} as a key', 'use a word as the key'
-            elif key.value in values:
+                what = f'{_WORDS[_TYPES[key.id]]} as a key'
+                raise FormatError(what, where=where, cure='use a word as the key')
+            if key.value in values:
                 first = _node_at(node, [key.value]).start_mark.line + 1
                 what = f"key '{key.value}' occurs twice, first in line {first}"
-                cure = 'remove one of them'
-            if what:
-                raise FormatError(what, where=f'{source}:{key.start_mark.line + 1}', cure=cure)
+                raise FormatError(what, where=where, cure='remove one of them')
             values[key.value] = _value(child, known.get(key.value, {}), root, source)
         return values
     if isinstance(node, yaml.SequenceNode):
-        inside = _resolved(schema.get('items', {}), root)
+        inside = schema.get('items', {})
         return [_value(child, inside, root, source) for child in node.value]
     if schema.get('type') == 'string' or node.style not in (None, '', 'plain'):
         return node.value
@@ -214,7 +207,7 @@ def _error(document: YamlDocument, error: Any) -> FormatError:
     else:
         node = _node_at(document.root, path)
         cure = _wanted(error.schema, document.schema)
-        what = f'{name} is {_KINDS[_TYPES[node.id]]} of {len(node.value)}'
+        what = f'{name} is {_WORDS[_TYPES[node.id]]} of {len(node.value)}'
         if isinstance(node, yaml.ScalarNode):
             what = f"{name} is '{node.value[:40]}'"
             cure += ', finite, without quotes or unit' * ('number' in cure)
@@ -226,5 +219,5 @@ def _wanted(schema: Schema, root: Schema) -> str:
     """Describe the values that a schema allows."""
     if 'anyOf' in schema:
         return ' or '.join(_wanted(_resolved(each, root), root) for each in schema['anyOf'])
-    limits = [f'{word} {schema[key]}' for key, word in _LIMITS.items() if key in schema]
-    return _KINDS[schema['type']] + (' of ' if limits else '') + ' and '.join(limits)
+    limits = [f'{word} {schema[key]}' for key, word in _WORDS.items() if key in schema]
+    return _WORDS[schema['type']] + (' of ' if limits else '') + ' and '.join(limits)

@@ -24,7 +24,7 @@ _SHOWN = 3
 _HEAD = 200
 _MOST_BYTES = 64 << 20
 """Largest size of all tables of a zip that are unpacked [bytes]."""
-_SUFFIXES = ('.csv', '.txt', '.tsv', '.dat', '.data', '.log', '.tab', '.json', '.geojson')
+_SUFFIXES = '.csv .txt .tsv .dat .data .log .tab .json .geojson'.split()
 
 
 def table_in(path: Path, is_wanted: Callable[[str], bool]) -> tuple[str, list[str]]:

@@ -36,7 +36,7 @@ class EveryOther:
         """Number of messages in windows of which every other message was faster."""
         self.means: tuple[float, float] | None = None
         """Means of the slower and the faster ones [m/s], if the last window was such a one."""
-        self._speeds: list[float] = []
+        self._speeds = list[float]()
 
     def note(self, speed: float) -> bool:
         """Note the speed of the next message [m/s]; whether it tells of two for the first time."""

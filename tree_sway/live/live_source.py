@@ -13,6 +13,7 @@ from collections.abc import Mapping
 import math
 import threading
 import time
+from typing import ClassVar
 
 from tree_sway.errors import shown
 from tree_sway.live.one_sender import OneSender
@@ -37,31 +38,22 @@ class LiveSource(ABC):
         Its transport, and the reader of its messages.
     log
         Function called with a line of news, from the source's thread.
-    patience
-        Time [s] in each state after which it is told why nothing comes; states without one are
-        not told.
-    silence, longest_pause
+    silence
         As in `Link`.
 
     """
 
-    def __init__(
-        self,
-        source: Source,
-        log: Log,
-        *,
-        patience: Mapping[str, float],
-        silence: float | None = None,
-        longest_pause: float = LONGEST_PAUSE,
-    ) -> None:
+    _patience: ClassVar[Mapping[str, float]]
+    """Time [s] in each state after which it is told why nothing comes; in others it is not."""
+    _longest_pause = LONGEST_PAUSE
+
+    def __init__(self, source: Source, log: Log, silence: float | None = None) -> None:
         self.accepted = self.other = 0
         """Numbers of samples, and of messages that are about something else."""
         self._source = source
         self._log = log
-        self._patience = patience
         self._last = ''
         self._expires = -math.inf  # time after which its newest sample no longer counts
-        self._ended = threading.Event()
         self._senders = OneSender()
         self._followed = -math.inf
         self.link = Link(
@@ -69,7 +61,7 @@ class LiveSource(ABC):
             self._receive,
             log,
             silence,
-            longest_pause=longest_pause,
+            longest_pause=self._longest_pause,
             admits=self._admits,
         )
         """The connection, with its state and counts."""
@@ -78,13 +70,11 @@ class LiveSource(ABC):
 
     def start(self) -> None:
         """Start to listen."""
-        self._ended.clear()
         self.link.start()
         threading.Thread(target=self._watch, name='live source', daemon=True).start()
 
     def stop(self) -> None:
         """Stop; the thread ends by itself if it is busy."""
-        self._ended.set()
         self.link.stop()
 
     @property
@@ -135,7 +125,7 @@ class LiveSource(ABC):
         """Number of what was refused, with the first cause, to stand behind a count of samples."""
         if not self.refused:
             return ''
-        return f', {sum(self.refused.values())} refused: {next(iter(self.refused))}'
+        return f', {self.refused.total()} refused: {next(iter(self.refused))}'
 
     def _why_nothing(self) -> str:
         """Why no sample was accepted so far."""
@@ -144,7 +134,7 @@ class LiveSource(ABC):
             return f'no connection to {link.transport}: {link.failure or "not yet"}'
         if not link.messages and not self.refused:
             return f'listening to {link.transport}: nothing has come yet'
-        number = max(link.messages, sum(self.refused.values()))
+        number = max(link.messages, self.refused.total())
         came = f'{number} {self._source.messages} came'
         if self.refused:
             causes = ', '.join(list(self.refused)[:_SHOWN_CAUSES])
@@ -159,7 +149,7 @@ class LiveSource(ABC):
         state = ''
         since = 0.0
         told = ''
-        while not self._ended.wait(_LOOK) and not self.accepted:
+        while not self.link.is_stopping and not self.accepted:
             if self.state != state:
                 state = self.state
                 since = time.monotonic()
@@ -167,6 +157,7 @@ class LiveSource(ABC):
             if state != told and waited >= self._patience.get(state, math.inf):
                 told = state
                 self._log(self._news())
+            self.link.pause(_LOOK)
 
     def _news(self) -> str:
         """Return the problem as a line for the terminal."""

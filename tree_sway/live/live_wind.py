@@ -14,8 +14,10 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 import math
+from statistics import median_low
 import threading
 import time
+from typing import ClassVar
 
 import numpy as np
 
@@ -25,15 +27,13 @@ from tree_sway.live.every_other import EveryOther
 from tree_sway.live.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.live.live_source import LiveSource
 from tree_sway.live.recent import RecentSamples
-from tree_sway.live.registry import OpenedSource
-from tree_sway.live.transports.transport import Log, Message
+from tree_sway.live.source import Source
+from tree_sway.live.transports.transport import ignore, Log, Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
 Sample = tuple[float, Velocity]
 """Time [s] and wind east, north, up [m/s], the way the air goes."""
 
-_PATIENCE = {'waiting': 4.0, 'unknown': 3.0}
-"""Time [s] after which silence, or messages that are not understood, are told."""
 _USUAL_INTERVAL = 60.0
 """Length of a mean [s] until the second one tells it."""
 _GAPS = 5
@@ -56,8 +56,8 @@ class LiveWind(LiveSource):
 
     Parameters
     ----------
-    opened
-        The source.
+    source
+        Its transport, and the reader of its messages.
     log
         Function called with a line of news, from the source's thread.
     taken
@@ -70,34 +70,35 @@ class LiveWind(LiveSource):
 
     """
 
+    _patience: ClassVar = {'waiting': 4.0, 'unknown': 3.0}
+
     def __init__(
         self,
-        opened: OpenedSource,
+        source: Source,
         log: Log,
         *,
         taken: Callable[[Velocity], None] | None = None,
-        heard: Callable[[WindReading], None] | None = None,
+        heard: Callable[[WindReading], None] = ignore,
         silence: float | None = None,
     ) -> None:
-        super().__init__(opened.source, log, patience=_PATIENCE, silence=silence)
-        self.bearing = opened.bearing
+        super().__init__(source, log, silence)
+        self.bearing = source.bearing
         """Direction that a wind without one comes from, clockwise from north [rad]."""
         self.newest: WindReading | None = None
         """Newest reading."""
         self.interval = 0.0
         """Length of the mean that the newest reading is [s]; 0 for the wind of an instant."""
-        self.lacks_direction = opened.is_without_vane
+        self.lacks_direction = source.is_without_vane
         """Whether the newest reading has no direction of its own."""
         self.every_other = EveryOther()
         """Whether its speeds look like those of two senders, which nothing else tells apart."""
-        self._opened = opened
         self._taken = taken
         self._heard = heard
         self._lock = threading.Lock()
         self._gusts = GustsAboutMean()
         self._samples = RecentSamples[Sample](_QUEUE)
         self._arrival = -math.inf
-        self._gaps: deque[float] = deque(maxlen=_GAPS)
+        self._gaps = deque[float](maxlen=_GAPS)
         self._blown = -math.inf
         self._is_guess = False
         """Whether the next reading will tell if the newest is a mean."""
@@ -120,15 +121,13 @@ class LiveWind(LiveSource):
     def name(self) -> str:
         """Name of the source for viewers."""
         place = self.newest.place if self.newest is not None else ''
-        return ', '.join(filter(None, (place, self._opened.name)))
+        return ', '.join(filter(None, (place, self._source.name)))
 
     @property
     def age(self) -> float:
         """Age of the newest reading [s], since its measurement if it has a time."""
         newest = self.newest
-        if newest is None:
-            return math.inf
-        if newest.time is not None:
+        if newest is not None and newest.time is not None:
             return max(time.time() - newest.time, 0.0)
         return time.monotonic() - self._arrival
 
@@ -198,7 +197,7 @@ class LiveWind(LiveSource):
             if isinstance(reading, Refusal):
                 cause = reading.reason
             if self.link.refuse(cause) and self.accepted:
-                self._log(f'{self._opened.name}: refused, and counted: {cause}')
+                self._log(f'{self._source.name}: refused, and counted: {cause}')
 
     def _use(self, reading: WindReading) -> None:
         now = time.monotonic()
@@ -219,19 +218,17 @@ class LiveWind(LiveSource):
                 gust = reading.gust if has_gust else None
                 self._gusts.set(now, np.array(velocity), interval, gust)
                 self._blown = max(self._blown, now - 1.0 / RATE)
-                lasts = self._source.lasts
-                self._expires = now - self.age + (_LASTS * interval if lasts is None else lasts)
+                self._expires = now - self.age + (self._source.lasts or _LASTS * interval)
             else:
                 self._expires = now + max(_LIVE_FOR, _LASTS * (period or 0.0))
-        if self._heard is not None:
-            self._heard(reading)
+        self._heard(reading)
         if is_first:
             text = described(reading, self.bearing)
             self._log(f'wind comes: {text}; {self._gusts_text(reading)}')
         elif was_guess:
-            self._log(f'{self._opened.name}: {self._gusts_text(reading)}')
+            self._log(f'{self._source.name}: {self._gusts_text(reading)}')
         if self.every_other.note(reading.speed):
-            self._log(f'{self._opened.name}: {self.every_other.problem}')
+            self._log(f'{self._source.name}: {self.every_other.problem}')
         if self.is_mean:
             return
         if self._taken is not None:
@@ -242,14 +239,14 @@ class LiveWind(LiveSource):
     @property
     def _period(self) -> float | None:
         """Usual time between two messages [s]; None while it is not known."""
-        gaps = sorted(self._gaps)
+        gaps = self._gaps
         if not gaps or (len(gaps) == 1 and gaps[0] > _LONGEST_SINGLE):
             return None
-        return gaps[(len(gaps) - 1) // 2]
+        return median_low(gaps)
 
     def _interval(self, reading: WindReading, period: float | None) -> float:
         """Length of the mean that a reading is [s]; 0 for the wind of an instant."""
-        stated = (self._opened.mean, reading.interval, self._source.interval)
+        stated = (self._source.mean, reading.interval, self._source.interval)
         known = [each for each in stated if each is not None]
         self._is_guess = not known and period is None
         usual = _USUAL_INTERVAL if period is None else period

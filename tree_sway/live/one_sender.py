@@ -10,7 +10,7 @@ message, or a sender whose next message comes from another port.
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 
 _PERIODS = 3.0
 _LEAST = 2.0
@@ -27,7 +27,7 @@ class OneSender:
     def __init__(self) -> None:
         self.current = ''
         """Origin of the messages that are followed."""
-        self.refused: dict[str, int] = {}
+        self.refused = Counter[str]()
         """Numbers of messages that were refused, by the first origins that occur."""
         self.total_refused = 0
         """Number of all messages that were refused."""
@@ -56,7 +56,7 @@ class OneSender:
             if self._gaps and now - self._newest <= max(self.patience, own):
                 self.total_refused += 1
                 if origin in self.refused or len(self.refused) < _MOST:
-                    self.refused[origin] = self.refused.get(origin, 0) + 1
+                    self.refused[origin] += 1
                 return False
             self.current = origin
             self._gaps.clear()

@@ -25,8 +25,8 @@ class RecentSamples(Generic[T]):
     """
 
     def __init__(self, most: int, counted: int = 1) -> None:
-        self._waiting: deque[tuple[float, T]] = deque(maxlen=most)
-        self._times: deque[float] = deque(maxlen=counted)
+        self._waiting = deque[tuple[float, T]](maxlen=most)
+        self._times = deque[float](maxlen=counted)
 
     def add(self, time: float, sample: T) -> None:
         """Add a sample of a time of `time.monotonic` [s]."""

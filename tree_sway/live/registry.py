@@ -4,55 +4,19 @@
 
 from __future__ import annotations
 
-from functools import cache
+from dataclasses import replace
 import importlib
-import math
-from typing import NamedTuple
 
 from tree_sway.live import sources
-from tree_sway.live.source import Source
+from tree_sway.live.source import Source, WEST
 from tree_sway.live.source_address import read_source_address
 from tree_sway.tables import table_beside
 
-
-class SourceKind(NamedTuple):
-    """A kind of source: its module in `sources`, schemes and an example of its addresses."""
-
-    module: str
-    schemes: tuple[str, ...]
-    form: str
+SOURCE_KINDS = table_beside(sources.__file__, 'sources.csv')
+"""Every kind: its module in `sources`, schemes and an example of its addresses."""
 
 
-class OpenedSource(NamedTuple):
-    """
-    A source with the options that all have.
-
-    ``name`` is shown to viewers. ``bearing`` is the direction that a wind comes from where the
-    instrument has no vane, clockwise from north [rad]. ``mean`` is the length of its means [s] if
-    it is given, 0 for the wind of instants. ``is_without_vane`` says that the direction is given.
-    """
-
-    source: Source
-    name: str
-    bearing: float
-    mean: float | None
-    is_without_vane: bool = False
-
-
-WEST = 1.5 * math.pi
-"""Bearing of a westerly [rad], for a wind without a direction."""
-
-
-@cache
-def source_kinds() -> tuple[SourceKind, ...]:
-    """Return every kind, as the table beside `sources` has them."""
-    rows = table_beside(sources.__file__, 'sources.csv')
-    return tuple(
-        SourceKind(each['module'], tuple(each['schemes'].split()), each['form']) for each in rows
-    )
-
-
-def open_source(text: str) -> OpenedSource:
+def open_source(text: str) -> Source:
     """
     Open a source by its address.
 
@@ -68,15 +32,17 @@ def open_source(text: str) -> OpenedSource:
 
     """
     address = read_source_address(text)
-    kinds = {scheme: kind for kind in source_kinds() for scheme in kind.schemes}
-    forms = ', '.join(kind.form for kind in source_kinds())
+    kinds = {scheme: kind for kind in SOURCE_KINDS for scheme in kind['schemes'].split()}
+    forms = ', '.join(kind['form'] for kind in SOURCE_KINDS)
     kind = address.kind_of(kinds, 'source of wind', 'sensor', forms)
-    module = importlib.import_module(f'{sources.__name__}.{kind.module}')
+    module = importlib.import_module(f'{sources.__name__}.{kind["module"]}')
     source: Source = module.open_source(address)
-    name = address.name
-    bearing = address.angle('from_degrees', WEST)
-    given = address.text_of('mean')
-    mean = address.number('mean', 0.0, 0.0, 86_400.0) if given else None
+    opened = replace(
+        source,
+        name=', '.join(filter(None, (address.name, source.name))),
+        mean=address.number('mean', 0.0, 0.0, 86_400.0) if address.text_of('mean') else None,
+        bearing=address.angle('from_degrees', WEST),
+        is_without_vane='from_degrees' in address.options,
+    )
     address.refuse_others()
-    shown = f'{name}, {source.name}' if name else source.name
-    return OpenedSource(source, shown, bearing, mean, 'from_degrees' in address.options)
+    return opened

@@ -6,11 +6,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+import math
 
 from tree_sway.files.wind import Reading
 from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.transports.link import Transport
 from tree_sway.live.transports.transport import Message
+
+WEST = 1.5 * math.pi
+"""Bearing of a westerly [rad], for a wind without a direction."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +42,13 @@ class Source:
         Word for its messages in reports.
     ticks
         Ticks of the sender's clock per second, for samples of motion; None to estimate them.
+    mean
+        Length of all its means [s] if its address gives it, 0 for the wind of instants.
+    bearing
+        Direction that a wind comes from where the instrument has no vane, clockwise from north
+        [rad].
+    is_without_vane
+        Whether its address gives that direction.
 
     """
 
@@ -49,3 +60,6 @@ class Source:
     lasts: float | None = None
     messages: str = 'messages'
     ticks: float | None = None
+    mean: float | None = None
+    bearing: float = WEST
+    is_without_vane: bool = False

@@ -129,7 +129,7 @@ class SourceAddress:
         for name in self.options:
             if name not in self.known:
                 cure = nearest(name, self.known) or f'it has {", ".join(sorted(self.known))}'
-                raise ParameterError(f"no option '{name}'", where=self.text, cure=cure)
+                raise self.error(f"no option '{name}'", cure)
 
     def kind_of(self, kinds: Mapping[str, T], what: str, where: str, forms: str) -> T:
         """Return the kind of its scheme; a `ParameterError` for one that is not there."""

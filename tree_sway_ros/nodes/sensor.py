@@ -34,12 +34,12 @@ class SensorNode(TreeSwayNode):
         )
         self._publisher = self.publisher(WIND, self._writer.message_class)
         self._recent = RecentCounts()
-        opened = open_source(self.values['address'])
-        self._lines = opened.source.read
-        self._messages = opened.source.messages
+        source = open_source(self.values['address'])
+        self._lines = source.read
+        self._messages = source.messages
         is_of_lines = isinstance(self._lines, InstrumentLines)
         self._wind = LiveWind(
-            opened,
+            source,
             self.get_logger().info,
             taken=self.guard.wrapped(self._publish),
             silence=self.values['silence'] if is_of_lines else None,

@@ -188,7 +188,7 @@ class Pacer(Worker):
             longest = round(self.clock_rate.largest_factor * (LONGEST_STEP + since))
         most = max(1, longest // self.period)
         if not self.is_simulated:
-            # What a wall clock that was set forward adds is not skipped. The two clocks are read one
+            # What a wall clock that was set forward adds is not skipped. The clocks are read one
             # after the other, so that they differ by what came between.
             jumped = periods * self.period > passed + LONGEST_STEP
             self._skipped += (max(1, round(passed / self.period)) if jumped else periods) - 1

@@ -16,6 +16,7 @@ cv2: Any = pytest.importorskip('cv2', reason='needs OpenCV: pip install .[camera
 RNG = np.random.default_rng(3)
 SCENE = cv2.GaussianBlur(RNG.uniform(0.0, 255.0, (300, 400)).astype(np.float32), (0, 0), 2.5)
 SCENE = 128.0 + 4.0 * (SCENE - SCENE.mean())
+EVERYWHERE = np.full((300, 400), 255, dtype=np.uint8)
 
 
 def picture(x: float, y: float) -> np.ndarray:
@@ -34,7 +35,7 @@ def moves(tracker: PointTracker, pictures: list[np.ndarray]) -> list[np.ndarray]
 
 def test_points_are_followed_to_a_tenth_of_a_pixel() -> None:
     places = [(0.0, 0.0), (1.3, -0.4), (3.7, 0.9), (0.2, 0.1), (0.0, 0.0)]
-    found = moves(PointTracker(cv2), [picture(*each) for each in places])
+    found = moves(PointTracker(cv2, EVERYWHERE), [picture(*each) for each in places])
     for moved, wanted in zip(found, places, strict=True):
         inner = np.isfinite(moved[:, 0])
         assert inner.mean() > 0.7
@@ -44,7 +45,7 @@ def test_points_are_followed_to_a_tenth_of_a_pixel() -> None:
 def test_a_hidden_point_is_lost_and_found_again() -> None:
     hidden = picture(0.5, 0.0)
     hidden[60:200, 100:300] = 255
-    tracker = PointTracker(cv2)
+    tracker = PointTracker(cv2, EVERYWHERE)
     first = tracker.follow(0.0, picture(0.0, 0.0)).points
     behind = (np.abs(first - [200.0, 130.0]) < [85.0, 55.0]).all(axis=1)
     assert behind.sum() > 10
@@ -58,7 +59,7 @@ def test_a_hidden_point_is_lost_and_found_again() -> None:
 def test_the_edge_of_a_shadow_and_a_cloud_behind_drag_no_point() -> None:
     column = np.arange(400.0)
     found = []
-    tracker = PointTracker(cv2)
+    tracker = PointTracker(cv2, EVERYWHERE)
     first = tracker.follow(0.0, picture(0.0, 0.0)).points
     for k in range(1, 8):
         light = 40.0 * np.tanh((column - 55.0 * k) / 8.0)
@@ -86,7 +87,7 @@ def test_points_are_found_under_the_mask_and_some_far_beside_it() -> None:
 
 
 def test_points_are_found_anew_when_most_are_lost_for_long() -> None:
-    tracker = PointTracker(cv2)
+    tracker = PointTracker(cv2, EVERYWHERE)
     tracker.follow(0.0, picture(0.0, 0.0))
     other = picture(0.0, 0.0)[::-1, ::-1].copy()
     seen = [tracker.follow(each, other).reference for each in (1.0, 5.0, 10.5, 11.0)]
@@ -94,7 +95,7 @@ def test_points_are_found_anew_when_most_are_lost_for_long() -> None:
 
 
 def test_a_picture_of_nothing_is_no_error() -> None:
-    tracker = PointTracker(cv2)
+    tracker = PointTracker(cv2, EVERYWHERE)
     grey = np.full((300, 400), 90, dtype=np.uint8)
     assert len(tracker.follow(0.0, grey).points) == 0
     assert len(tracker.follow(0.1, picture(0.0, 0.0)).points) > 10

@@ -27,7 +27,7 @@ from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
 from tree_sway.live.commands import sensor_arguments  # noqa: E402
 from tree_sway.live.commands.sensor_arguments import HELP  # noqa: E402
-from tree_sway.live.registry import source_kinds  # noqa: E402
+from tree_sway.live.registry import SOURCE_KINDS  # noqa: E402
 from tree_sway.stream.protocol import decode_frame  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -72,8 +72,8 @@ def no_ros(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_help_names_every_kind_of_source() -> None:
-    for kind in source_kinds():
-        assert kind.schemes[0] in HELP
+    for kind in SOURCE_KINDS:
+        assert kind['schemes'].split()[0] in HELP
 
 
 def test_a_tree_is_simulated_in_live_wind(

@@ -46,7 +46,7 @@ def test_a_failure_is_told_by_what_to_do(error: Exception, words: str) -> None:
     ],
 )
 def test_each_way_to_an_instrument_tells_it(hear, address: str, words: str) -> None:
-    heard = hear(open_source(address).source.transport)
+    heard = hear(open_source(address).transport)
     heard.until(lambda: any(words in text for text in heard.said))
 
 

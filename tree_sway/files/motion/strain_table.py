@@ -44,8 +44,8 @@ class StrainRecord:
     time: Floats
     strain: Floats
     source: str
-    epoch: float | None = None
-    notes: tuple[str, ...] = ()
+    epoch: float | None
+    notes: tuple[str, ...]
 
     def motion(self, pair: int = 0) -> MotionRecord:
         """Return a pair, about its median, as the record of a sensor at a place of strain."""

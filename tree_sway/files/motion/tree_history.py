@@ -9,7 +9,6 @@ import csv
 from datetime import datetime, timezone
 import io
 import os
-from pathlib import Path
 
 import numpy as np
 
@@ -32,7 +31,10 @@ _LEARNED = {
 }
 """Columns of what was learned, and the attributes of a `LearnedTree`."""
 _IN_USE, _RESIDUAL, _REFUSED, _CHANGE = _OF_SENSOR = (
-    *('in use [-]', 'residual [-]', 'refused', 'frequencies over those before [-]'),
+    'in use [-]',
+    'residual [-]',
+    'refused',
+    'frequencies over those before [-]',
 )
 
 
@@ -99,10 +101,10 @@ class TreeHistory:
 
     def __init__(self, path: str, names: Sequence[str]) -> None:
         refuse_no_history(path, names)
-        self._path: Path = path_of(path)
+        self._path = path_of(path)
         self._names = list(names)
         self._began: float | None = None
-        self._noted: list[dict[str, float]] = []
+        self._noted = list[dict[str, float]]()
 
     def note(self, twin: ObservedTree, now: float) -> bool:
         """

@@ -43,15 +43,13 @@ def read_bag_wind(
 
     """
     WindConvention(direction_convention)  # refused before the file is read
-    source = str(path)
     bag = read_bag(path, WIND_TYPES)
     chosen = bag.chosen(topic, WIND_TYPES, 'wind', '--wind-option topic=')
     kind = bag.types[chosen]
-    messages = bag.messages[chosen]
-    rows = WindRows(source, row_name='message')
+    rows = WindRows(str(path), row_name='message')
     epoch = -1
     n_unstamped = 0
-    for number, (recorded, data) in enumerate(messages, start=1):
+    for number, (recorded, data) in enumerate(bag.messages[chosen], start=1):
         found = numbers_of(data, 3, has_header=not kind.endswith('/Vector3'))
         if found is None:
             rows.refuse(number, 'it is too short')

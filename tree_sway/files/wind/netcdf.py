@@ -54,27 +54,40 @@ def read_netcdf_wind(
     point = map(repr, _point(at))
     cure = 'download it again'
     found = bounded_arrays(_winds_of_netcdf, path, *point, kind='a netCDF file', cure=cure)
-    rows = WindRows(str(path), row_name='sample')
-    velocity = found['velocity']
-    good = np.isfinite(velocity).all(axis=1)
-    for index in np.flatnonzero(~good).tolist():
-        rows.refuse(index + 1, 'no value')
-    rows.time = array('d', found['seconds'][good])
-    rows.velocity = array('d', velocity[good].ravel())
-    rows.number = array('q', (np.flatnonzero(good) + 1).tolist())
-    if 'gust' in found:
-        rows.gust = found['gust'][good]
-    notes = tuple(found['notes'].tolist())
-    record = rows.record(epoch=float(found['epoch']), notes=notes)
+    rows = WindRows(str(path), row_name='sample', gust=found.get('gust'))
+    rows.time = array('d', found['seconds'])
+    rows.velocity = array('d', found['velocity'].ravel())
+    rows.number = array('q', range(1, len(rows.time) + 1))
+    record = rows.record(epoch=float(found['epoch']), notes=(str(found['note']),))
     return filled_means(record, turbulence, seed)
 
 
 def _winds_of_netcdf(path: str, *at: str) -> Arrays:
-    """Yield velocity, seconds after the first, gust where there is one, epoch and notes."""
+    """Yield velocity, seconds after the first, gust where there is one, epoch and a note."""
     from netCDF4 import Dataset
 
     with Dataset(path) as data:
-        yield from _read(data, at)
+        found = {each: _find(data, each) for each in ('time', *_COMPONENTS, *_POLAR, 'gust')}
+        clock = found['time']
+        is_polar = None in [found[each] for each in _COMPONENTS]
+        first, second = (found[each] for each in (_POLAR if is_polar else _COMPONENTS))
+        if None in (clock, first, second):
+            said = [word for each, word in _WORDS.items() if found[each] is None]
+            raise FormatError(
+                f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}',
+                cure='choose the 10 m u and v components of wind, or its speed and direction',
+            )
+        note, place = _place(data, first, at)
+        one = _series(first, 'speed', clock, place)
+        other = _series(second, 'angle' if is_polar else 'speed', clock, place)
+        components = np.column_stack([one, other, np.zeros(len(one))])
+        yield 'velocity', velocity_from(one, np.degrees(other)) if is_polar else components
+        seconds, epoch = _seconds(clock)
+        yield 'seconds', seconds
+        yield 'epoch', epoch
+        yield 'note', note
+        if found['gust'] is not None:
+            yield 'gust', _series(found['gust'], 'speed', clock, place)
 
 
 def _point(at: tuple[str, ...] | None) -> tuple[float, ...]:
@@ -90,29 +103,6 @@ def _point(at: tuple[str, ...] | None) -> tuple[float, ...]:
     return latitude, longitude
 
 
-def _read(data: Any, point: Sequence[str]) -> Arrays:
-    found = {each: _find(data, each) for each in ('time', *_COMPONENTS, *_POLAR, 'gust')}
-    clock = found['time']
-    is_polar = None in [found[each] for each in _COMPONENTS]
-    first, second = (found[each] for each in (_POLAR if is_polar else _COMPONENTS))
-    if None in (clock, first, second):
-        said = [word for each, word in _WORDS.items() if found[each] is None]
-        raise FormatError(
-            f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}',
-            cure='choose the 10 m u and v components of wind, or its speed and direction',
-        )
-    notes, place = _place(data, first, point)
-    one = _series(first, 'speed', clock, place)
-    other = _series(second, 'angle' if is_polar else 'speed', clock, place)
-    components = np.column_stack([one, other, np.zeros(len(one))])
-    seconds, epoch = _seconds(clock)
-    yield 'velocity', velocity_from(one, np.degrees(other)) if is_polar else components
-    yield from (('seconds', seconds), ('epoch', epoch))
-    yield 'notes', np.array(notes, dtype=np.str_)
-    if found['gust'] is not None:
-        yield 'gust', _series(found['gust'], 'speed', clock, place)
-
-
 def _find(data: Any, quantity: str) -> Any:
     """Variable of a quantity whose name comes first among the usual ones, or standard name."""
     ranks = [
@@ -124,8 +114,8 @@ def _find(data: Any, quantity: str) -> Any:
     return data.variables[min(ranks)[2]] if ranks else None
 
 
-def _place(data: Any, variable: Any, point: Sequence[str]) -> tuple[list[str], dict[str, int]]:
-    """Index of each dimension at a point, and a note of where that is."""
+def _place(data: Any, variable: Any, point: Sequence[str]) -> tuple[str, dict[str, int]]:
+    """Note of where a point is, empty without a grid, and index of each dimension there."""
     chosen = dict[str, int]()
     said = list[str]()
     for axis, quantity in enumerate(('latitude', 'longitude')):
@@ -135,8 +125,8 @@ def _place(data: Any, variable: Any, point: Sequence[str]) -> tuple[list[str], d
             apart = np.abs((degrees - wanted + 180.0) % 360.0 - 180.0)
             chosen[name] = int(np.argmin(apart))
             said.append(f'{quantity} {degrees[chosen[name]]:g}')
-    grid = f'the point at {", ".join(said)}'
-    return ([f'{grid}; at=LATITUDE,LONGITUDE chooses another'] if said else []), chosen
+    note = f'the point at {", ".join(said)}; at=LATITUDE,LONGITUDE chooses another'
+    return note * bool(said), chosen
 
 
 def _series(variable: Any, kind: str, clock: Any, place: dict[str, int]) -> Floats:

@@ -20,9 +20,9 @@ checksum, a status that is not A, an empty field: the sentence is refused.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
-from math import pi
+import math
 from pathlib import Path
 import re
 
@@ -73,9 +73,10 @@ def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> Rea
     if why := why_broken(len(line), check and check.strip(), body):
         return Refusal(kind, why)
     try:
-        angle, speed, unit, turn = _READERS[name](fields, heading, declination)
+        angle, speed, unit, origin = _READERS[name](fields)
     except ValueError as error:
         return Refusal(kind, str(error))
+    turn = {'bow': heading, 'magnetic north': declination, 'true north': 0.0}[origin]
     return reading_of(kind, speed, angle, factor=_UNITS[unit], turn=turn, interval=0.0)
 
 
@@ -104,16 +105,16 @@ def read_nmea_wind(
         raise ParameterError(f"sentence is '{sentence}'", cure=f'use auto, {", ".join(SENTENCES)}')
     wanted: Sequence[str] = SENTENCES if sentence == 'auto' else (sentence,)
     parse = partial(parse_nmea, heading=heading, declination=declination)
-    bow = f'directions count from the bow, taken to head {heading * 180.0 / pi:g} degrees'
+    bow = f'directions count from the bow, taken to head {math.degrees(heading):g} degrees'
     kind, record = read_sensor_log(path, parse, wanted, rate)
     return record if kind in ('MWD', 'MDA') else record.with_note(bow)
 
 
-Parts = tuple[str | float, str, str, float]
-"""Angle, speed and its unit as they are sent, and where the angle counts from in [rad]."""
+Parts = tuple[str | float, str, str, str]
+"""Angle, speed and its unit as they are sent, and where the angle counts from."""
 
 
-def _mwv(fields: list[str], heading: float, _: float = 0.0) -> Parts:
+def _mwv(fields: list[str]) -> Parts:
     if len(fields) < 5:
         raise ValueError(f'{len(fields)} fields of 5')
     angle, _reference, speed, unit, status = fields[:5]
@@ -121,10 +122,10 @@ def _mwv(fields: list[str], heading: float, _: float = 0.0) -> Parts:
         raise ValueError(f"status is '{status[:8]}', not A")
     if unit not in _UNITS:
         raise ValueError(f"no unit K, M, N or S: '{unit[:8]}'")
-    return angle, speed, unit, heading
+    return angle, speed, unit, 'bow'
 
 
-def _mwd(fields: list[str], _: float, declination: float) -> Parts:
+def _mwd(fields: list[str]) -> Parts:
     if len(fields) < 8:
         raise ValueError(f'{len(fields)} fields of 8')
     true, magnetic, knots, speed = fields[:8:2]
@@ -132,11 +133,11 @@ def _mwd(fields: list[str], _: float, declination: float) -> Parts:
     if finite(speed) is None and finite(knots) is not None:
         speed, unit = knots, 'N'
     if bearing_of(true) is None and magnetic:
-        return magnetic, speed, unit, declination
-    return true, speed, unit, 0.0
+        return magnetic, speed, unit, 'magnetic north'
+    return true, speed, unit, 'true north'
 
 
-def _xdr(fields: list[str], heading: float, _: float) -> Parts:
+def _xdr(fields: list[str]) -> Parts:
     """Wind of transducers in groups of kind, value, unit and name."""
     groups = [fields[i : i + 4] for i in range(0, len(fields) - 3, 4)]
     angles = [each[1] for each in groups if each[0] == 'A' and each[2] == 'D']
@@ -144,10 +145,10 @@ def _xdr(fields: list[str], heading: float, _: float) -> Parts:
     if not angles or not speeds:
         raise ValueError('no angle in degrees with a speed')
     angle = angles[len(angles) > 2]
-    return _mwv([angle, 'R', *speeds[len(speeds) > 2], 'A'], heading)
+    return _mwv([angle, 'R', *speeds[len(speeds) > 2], 'A'])
 
 
-def _vwr(fields: list[str], heading: float, _: float) -> Parts:
+def _vwr(fields: list[str]) -> Parts:
     """Angle up to half a turn, left or right; the first given speed is used."""
     angle, side = [*fields, ''][:2]
     pairs = zip(fields[2::2], fields[3::2], strict=False)
@@ -160,10 +161,8 @@ def _vwr(fields: list[str], heading: float, _: float) -> Parts:
     if not speeds:
         raise ValueError('no speed with a unit')
     from_bow = degrees if side == 'R' else 360.0 - degrees
-    return from_bow, *speeds[0], heading
+    return from_bow, *speeds[0], 'bow'
 
 
-_READERS: dict[str, Callable[[list[str], float, float], Parts]] = {
-    'MWV': _mwv, 'MWD': _mwd, 'MDA': _mwd, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr,
-}  # fmt: skip
-"""Readers of the fields of a sentence, with the heading and the declination [rad]."""
+_READERS = {'MWV': _mwv, 'MWD': _mwd, 'MDA': _mwd, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr}
+"""Readers of the fields of a sentence."""

@@ -159,10 +159,11 @@ class WindRows:
         time = np.array(self.time)
         velocity = np.array(self.velocity).reshape(-1, 3)
         velocity = WindConvention(direction_convention, yaw_offset=yaw).velocity(velocity)
-        speed = np.sqrt(np.einsum('ij,ij->i', velocity, velocity))
+        speed = np.linalg.norm(velocity, axis=1)
         good = np.isfinite(time) & (speed <= FASTEST_WIND)
         for index in np.flatnonzero(~good):
             why = f'{speed[index]:.3g} m/s at {time[index]:g} s'
+            why = 'no value' if np.isnan(speed[index]) else why
             self.refuse(self.number[index], why if np.isfinite(time[index]) else 'no time in it')
         rows = np.flatnonzero(good)
         late = ~increasing(time[rows])
@@ -222,19 +223,17 @@ def _gaps(time: Floats) -> str:
 
 def increasing(time: Floats) -> NDArray[np.bool_]:
     """Mark a longest increasing sequence of times (n,), so that a wrong stamp is one sample."""
-    keep = np.ones(len(time), dtype=np.bool_)
     if bool((np.diff(time) > 0.0).all()):
-        return keep
-    ends: list[float] = []
-    rank = np.empty(len(time), dtype=np.int64)
+        return np.ones(len(time), dtype=np.bool_)
+    keep = np.zeros(len(time), dtype=np.bool_)
+    ends, last = [-np.inf], [-1]  # the least end of a sequence of each length, and its place
+    before = list[int]()
     for index, value in enumerate(time.tolist()):
-        rank[index] = place = bisect_left(ends, value)
-        ends[place : place + 1] = [value]  # a new one at the end
-    wanted = len(ends) - 1
-    bound = float('inf')
-    for index in reversed(range(len(time))):
-        keep[index] = rank[index] == wanted and time[index] < bound
-        if keep[index]:
-            wanted -= 1
-            bound = float(time[index])
+        length = bisect_left(ends, value)
+        before.append(last[length - 1])
+        ends[length : length + 1], last[length : length + 1] = [value], [index]
+    index = last[-1]
+    while index >= 0:
+        keep[index] = True
+        index = before[index]
     return keep

@@ -39,7 +39,11 @@ def winds_of_directions(
     speeds = table.values([speed.index])[:, 0] * speed.factor
     cells = table.cells(speed.index, table.rows)
     speeds[are_nines(cells, speeds / speed.factor)] = np.nan
-    degrees, texts = _degrees(table, direction)
+    if isinstance(direction, Column):
+        texts = table.cells(direction.index, table.rows)
+        degrees = degrees_of(texts) * direction.factor / (unit_factor('angle', 'deg') or 1.0)
+    else:
+        degrees = np.full(len(speeds), direction)
     velocity = velocity_from(speeds, degrees, yaw)
     for row in np.flatnonzero(np.isnan(velocity[:, 0])).tolist():
         if speeds[row] >= 0.0:
@@ -55,11 +59,3 @@ def winds_of_directions(
             why = table.why_none(row, [speed.index])
         rows.refuse(table.numbers[row], why)
     return -velocity if convention == 'to' else velocity
-
-
-def _degrees(table: TextTable, direction: Column | float) -> tuple[Floats, list[str]]:
-    if isinstance(direction, float):
-        return np.full(len(table.rows), direction), [''] * len(table.rows)
-    texts = table.cells(direction.index, table.rows)
-    to_degrees = direction.factor / (unit_factor('angle', 'deg') or 1.0)
-    return degrees_of(texts) * to_degrees, texts

@@ -74,7 +74,7 @@ def read_sensor_log(
     """
     if not rate > 0.0:
         raise ParameterError(f'rate is {rate:g} Hz', cure='give more than 0')
-    found: dict[str, tuple[WindRows, list[str]]] = {}
+    found = dict[str, tuple[WindRows, list[str]]]()
     clock = ''
     for number, line in enumerate(read_lines(path), start=1):
         if told := _CLOCK.search(line):

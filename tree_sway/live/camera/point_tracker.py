@@ -64,25 +64,21 @@ class PointTracker:
     cv2
         The module of OpenCV.
     mask
-        Where in the picture points are found, not 0 there, (high, wide); everywhere if None.
-        Some are found far beside it too, which tell whether the camera shakes.
+        Where in the picture points are found, not 0 there, (high, wide). Some are found far beside
+        it too, which tell whether the camera shakes.
 
     """
 
-    def __init__(self, cv2: Any, mask: Any = None) -> None:
-        self._cv2, self._mask = cv2, mask
+    def __init__(self, cv2: Any, mask: Any) -> None:
+        self._cv2 = cv2
         self._reference = -1
         self._first: Any = None
         self._found = self._last = _NO_POINTS
         self._good_at = 0.0
-        self._part: tuple[slice, ...] = (slice(None), slice(None))
-        self._corner = np.zeros(2)
-        if mask is not None and mask.any():
-            x, y, wide, high = cv2.boundingRect(mask)
-            left, top = max(x - _EDGE, 0), max(y - _EDGE, 0)
-            self._part = slice(top, y + high + _EDGE), slice(left, x + wide + _EDGE)
-            self._mask = mask[self._part]
-            self._corner = np.array((left, top), dtype=np.float64)
+        x, y, wide, high = cv2.boundingRect(mask)
+        left, top = self._corner = max(x - _EDGE, 0), max(y - _EDGE, 0)
+        self._part = slice(top, y + high + _EDGE), slice(left, x + wide + _EDGE)
+        self._mask = mask[self._part]
         ends = cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT
         self._flow = {
             'winSize': _WINDOW,
@@ -104,7 +100,7 @@ class PointTracker:
         seen, is_seen, _ = follow(self._first, grey, self._found, self._last.copy(), **self._flow)
         back, is_back, _ = follow(grey, self._first, seen, self._found.copy(), **self._flow)
         missed = np.linalg.norm(back - self._found, axis=2).ravel()
-        is_good = (is_seen.ravel() == 1) & (is_back.ravel() == 1) & (missed < _RETURNED)
+        is_good = ((is_seen & is_back).ravel() == 1) & (missed < _RETURNED)
         # A lost point is sought where those about it have gone: by the middle of all.
         moved = np.median((seen - self._found)[is_good], axis=0) if is_good.any() else 0.0
         self._last = np.where(is_good[:, None, None], seen, self._found + moved).astype(np.float32)
@@ -123,7 +119,7 @@ class PointTracker:
             return _NO_POINTS if found is None else found
 
         self._found = features(_MOST_POINTS, _APART, self._mask)
-        if self._mask is not None and len(self._found):
+        if len(self._found):
             near = self._cv2.dilate(self._mask, np.ones((2 * _AWAY + 1, 2 * _AWAY + 1), np.uint8))
             behind = features(_MOST_BEHIND, _BEHIND_APART, 255 - near)
             self._found = np.concatenate([self._found, behind])

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from tree_sway.commands import say
 from tree_sway.errors import ParameterError
 from tree_sway.live.commands.sensor_places import add_place_argument, sensors_and_places
+from tree_sway.live.transports.transport import ignore
 
 if TYPE_CHECKING:
     from tree_sway.live import MotionFeed
@@ -67,10 +68,10 @@ def sensing(
                 where='--motion',
                 cure='a sensor has one place: give each its own port, host or topic',
             )
-    tells: Sequence[Callable[[MotionReading], None] | None] = heard or [None] * len(sources)
+    every_heard = heard or [ignore] * len(sources)
     placed = [
-        PlacedSensor(LiveMotion(source, say_motion, heard=tell), at)
-        for source, tell, (_, at) in zip(sources, tells, places, strict=True)
+        PlacedSensor(LiveMotion(source, say_motion, heard=each), at)
+        for source, each, (_, at) in zip(sources, every_heard, places, strict=True)
     ]
     feed = MotionFeed(placed)
     if len(feed.sensors) < len(placed):

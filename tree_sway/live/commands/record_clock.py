@@ -36,11 +36,14 @@ def iso_date(date: float, timespec: str) -> str:
     return stamp.replace('+00:00', 'Z')
 
 
-def wait(end: float, is_over: Callable[[], bool]) -> None:
-    """Wait until a time of `time.monotonic`, or until something is over, or Ctrl-C."""
+def wait(end: float, is_over: Callable[[], object]) -> bool:
+    """Wait until a time of `time.monotonic`, or until something is over; False after Ctrl-C."""
     pause = threading.Event()
     try:
-        while (left := end - time.monotonic()) > 0.0 and not is_over():
+        while (left := end - time.monotonic()) > 0.0:
             pause.wait(min(_LOOK, left))
+            if is_over():
+                break
     except KeyboardInterrupt:
-        pass
+        return False
+    return True

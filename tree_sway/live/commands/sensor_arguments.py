@@ -18,6 +18,8 @@ from tree_sway.commands import say
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files.commands import source_name
 from tree_sway.files.wind import WindRecord
+from tree_sway.live.commands.record_clock import wait
+from tree_sway.live.transports.transport import ignore
 
 if TYPE_CHECKING:
     from tree_sway.files.wind import WindReading
@@ -47,7 +49,7 @@ say_sensor = partial(say, kind='sensor')
 
 @contextmanager
 def listening(
-    arguments: argparse.Namespace, heard: Callable[[WindReading], None] | None = None
+    arguments: argparse.Namespace, heard: Callable[[WindReading], None] = ignore
 ) -> Iterator[LiveWind]:
     """
     Listen to the source of ``--sensor``, and end at once.
@@ -90,16 +92,10 @@ def live_record(arguments: argparse.Namespace, seconds: float) -> WindRecord:
 
     A `TransportError` reports that no wind came.
     """
-    pause = threading.Event()
     samples = list[tuple[float, tuple[float, float, float]]]()
     with listening(arguments) as wind:
         _wait_for_wind(wind)
-        end = time.monotonic() + seconds
-        try:
-            while time.monotonic() < end:
-                pause.wait(_LOOK)
-                samples += wind.drain()
-        except KeyboardInterrupt:
+        if not wait(time.monotonic() + seconds, lambda: samples.extend(wind.drain())):
             say_sensor('ended: what came so far is used')
         name, refused = wind.name, wind.refused_text
     if len(samples) < 2:

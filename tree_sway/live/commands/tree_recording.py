@@ -90,20 +90,21 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
             wind_table.wind = wind
             wait(end, lambda: any(each.failure for each in every))
             wind_problem = wind.problem
-        problems = [each.live.problem for each in sensors]
+        problems = {name: each.live.problem for name, each in feed.sensors.items()}
     for table in every:
         table.close()
-    counts = [table.count for table in tables]
-    came = [(sensor, count) for sensor, count in zip(placed, counts, strict=True) if count]
+    came = [
+        (sensor, table.count) for sensor, table in zip(placed, tables, strict=True) if table.count
+    ]
     heard = [sensor for sensor, _ in came]
     write_tree_record(sheet._replace(motion=heard, wind_source=wind.name))
-    for sensor, problem in zip(placed, problems, strict=True):
+    for name, problem in problems.items():
         if problem:
-            say(f'{sensor.source} at {sensor.at}: {problem}')
+            say(f'{name}: {problem}')
     if not wind_table.count:
         raise TransportError(wind_problem or 'no wind came', where='--sensor')
     if not came:
-        raise TransportError('; '.join(problems) or 'no motion came', where='--motion')
+        raise TransportError('; '.join(problems.values()) or 'no motion came', where='--motion')
     for table in every:
         if table.count:
             table.say_short(seconds)
@@ -117,13 +118,12 @@ class MotionTable(RowFile):
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
-        self._folder = path.parent
         self._clock = RecordClock()
         self._names: tuple[str, ...] = ()
 
     def take(self, sample: MotionReading) -> None:
         """Write a sample, once there is its folder; called by the sensor's thread."""
-        if not self._folder.is_dir():
+        if not self._path.parent.is_dir():
             return
         if not self._names:
             self._names = tuple(name for name in _COLUMNS if getattr(sample, name) is not None)

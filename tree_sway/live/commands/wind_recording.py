@@ -70,7 +70,7 @@ class WindTable(RowFile):
     def __init__(self, path: Path) -> None:
         super().__init__(path)
         self.is_of_means = False
-        self._waiting: list[tuple[float, WindReading]] = []
+        self._waiting = list[tuple[float, WindReading]]()
         self._before: float | None = None
         self._clock = RecordClock()
 

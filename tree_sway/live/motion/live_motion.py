@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 import math
 import time
+from typing import ClassVar
 
 from tree_sway.files.wind import Refusal
 from tree_sway.live.live_source import LiveSource
@@ -20,7 +21,7 @@ from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.motion.sender_clock import SenderClock
 from tree_sway.live.recent import RecentSamples
 from tree_sway.live.source import Source
-from tree_sway.live.transports.transport import Log, Message
+from tree_sway.live.transports.transport import ignore, Log, Message
 
 SLOWEST = 5.0
 """Least number of samples per second [Hz] that follows a tree."""
@@ -29,11 +30,8 @@ _SILENT = 5.0
 """Time [s] without a good sample after which a sensor is stale."""
 _INCOMPLETE = 1.0
 """Time [s] without a sample of all quantities after which those that come are taken as all."""
-_PATIENCE = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
-"""Time [s] after which silence, or messages that are not understood, are told."""
 _COUNTED = 40
 """Samples over which the rate is counted."""
-_LONGEST_PAUSE = 2.0
 _LEFT_OUT = 'the tree stood still then, paused or as this machine had too much to do'
 
 
@@ -52,14 +50,17 @@ class LiveMotion(LiveSource):
 
     """
 
+    _patience: ClassVar = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
+    _longest_pause = 2.0
+
     def __init__(
         self,
         source: Source,
         log: Log,
         *,
-        heard: Callable[[MotionReading], None] | None = None,
+        heard: Callable[[MotionReading], None] = ignore,
     ) -> None:
-        super().__init__(source, log, patience=_PATIENCE, longest_pause=_LONGEST_PAUSE)
+        super().__init__(source, log)
         self.name = source.name
         """Name of the sensor for viewers."""
         self.quantities: tuple[str, ...] = ()
@@ -69,6 +70,8 @@ class LiveMotion(LiveSource):
         self._heard = heard
         self._clock = SenderClock(source.ticks)
         self._samples = RecentSamples[MotionReading](_QUEUE, _COUNTED)
+        self.drain = self._samples.drain
+        """Returns the samples since the last call, up to a time; all of `time.monotonic` [s]."""
         self._sent = self._refused_at = -math.inf
         self._cause = ''
 
@@ -105,10 +108,6 @@ class LiveMotion(LiveSource):
         if self.left_out:
             told.append(f'{self.left_out} samples were refused: {_LEFT_OUT}')
         return '; '.join(filter(None, told))
-
-    def drain(self, until: float = math.inf) -> list[MotionReading]:
-        """Return the samples since the last call, up to a time; all of `time.monotonic` [s]."""
-        return self._samples.drain(until)
 
     def _news(self) -> str:
         return f'{self.name}: {self.problem}'
@@ -159,8 +158,7 @@ class LiveMotion(LiveSource):
                 self.quantities = each.quantities
                 self._log(f'{self.name}: samples of {_words(self.quantities)} come')
             self._samples.add(at, sample)
-            if self._heard is not None:
-                self._heard(sample)
+            self._heard(sample)
 
     def _refuse(self, cause: str, count: int = 1) -> bool:
         """Count what is refused; return whether its cause is new."""
@@ -168,8 +166,5 @@ class LiveMotion(LiveSource):
         return self.link.refuse(cause, count)
 
 
-_WORDS = {'rate': 'angular rate'}
-
-
 def _words(quantities: Sequence[str]) -> str:
-    return ' and '.join(_WORDS.get(name, name) for name in quantities)
+    return ' and '.join(quantities).replace('rate', 'angular rate')

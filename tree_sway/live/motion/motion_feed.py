@@ -87,12 +87,12 @@ class MotionFeed:
         if self._ahead - ahead > _ROUNDING:
             self._left_out = _LeftOut(self._ahead, self._stepped, self._stepped - ahead)
         self._ahead, self._stepped = ahead, until
-        film = self.film
-        sightings = film.drain() if film else []
-        if film and isinstance(simulator, FilmedTree):
-            simulator.camera = film.camera
-            for seen in sightings:
-                simulator.film(seen.time + self._ahead, seen.reference, seen.points)
+        if film := self.film:
+            sightings = film.drain()
+            if isinstance(simulator, FilmedTree):
+                simulator.camera = film.camera
+                for seen in sightings:
+                    simulator.film(seen.time + self._ahead, seen.reference, seen.points)
         for name, placed in self.sensors.items():
             samples = placed.live.drain(moment)
             if not isinstance(simulator, ObservedTree) or name not in simulator.sensors:

@@ -14,7 +14,7 @@ from tree_sway.live.source_address import read_source_address, SourceAddress
 from tree_sway.live.sources.lines import udp_of
 from tree_sway.live.sources.mqtt_topic import broker_of
 
-_FORMS = ('http://PHONE:8080 (phyphox)', 'udp:PORT', 'mqtt://host/topic')
+_FORMS = 'http://PHONE:8080 (phyphox), udp:PORT, mqtt://host/topic'
 """Addresses as examples."""
 
 
@@ -36,12 +36,11 @@ def open_motion(text: str) -> Source:
         A library that it needs is not installed.
 
     """
-    forms = ', '.join(_FORMS)
-    address = read_source_address(text, '--motion', f'give one of {forms}')
+    address = read_source_address(text, '--motion', f'give one of {_FORMS}')
     known = {
         'http': _phyphox, 'https': _phyphox, 'udp': _udp, 'mqtt': _mqtt, 'mqtts': _mqtt,
     }  # fmt: skip
-    source = address.kind_of(known, 'live motion sensor', '--motion', forms)(address)
+    source = address.kind_of(known, 'live motion sensor', '--motion', _FORMS)(address)
     name = address.name
     address.refuse_others()
     return replace(source, name=name or source.name)

@@ -13,7 +13,7 @@ interpolated to the times of the acceleration.
 from __future__ import annotations
 
 import asyncio
-from collections import ChainMap, deque
+from collections import ChainMap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 import json
@@ -23,9 +23,10 @@ from typing import Any
 import aiohttp
 import numpy as np
 
+from tree_sway.core.arrays import Floats
 from tree_sway.files import list_of, object_of
 from tree_sway.files.wind import number, Refusal
-from tree_sway.live.motion.motion_reading import MotionReading, Numbers
+from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.readers.json_path import parse_json, value_at
 from tree_sway.live.transports.http_poll import document_of
 from tree_sway.live.transports.link import Link
@@ -49,8 +50,6 @@ _SENSORS = (
 """Quantities, and the sources of phyphox that have them, best first."""
 _KIND = 'phyphox'
 
-Sample = tuple[float, Numbers]
-
 
 @dataclass
 class _Sensor:
@@ -61,7 +60,8 @@ class _Sensor:
     time: str
     newest: float = 0.0
     """Time of its newest sample [s]."""
-    waiting: deque[Sample] = field(default_factory=lambda: deque(maxlen=_WAITING))
+    waiting: Floats = field(default_factory=lambda: np.zeros((0, 4)))
+    """Samples that were not read yet: time [s] and three axes, (n, 4)."""
     is_heard: bool = False
 
     def question(self) -> dict[str, str]:
@@ -69,28 +69,29 @@ class _Sensor:
         after = f'{self.newest:.9g}'
         return {self.time: after, **{axis: f'{after}|{self.time}' for axis in self.axes}}
 
-    def rows(self, answer: Any) -> list[Sample] | None:
+    def rows(self, answer: Any) -> Floats | None:
         """
-        Return its new samples in an answer; None if its buffers differ in length by many.
+        Return its new samples in an answer, (n, 4); None if its buffers differ in length by many.
 
         All values of an answer are later than one moment, so buffers agree from their first value
         on.
         """
-        times, *columns = (_values(answer, name) for name in (self.time, *self.axes))
-        lengths = [*map(len, (times, *columns))]
+        columns = [_values(answer, name) for name in (self.time, *self.axes)]
+        lengths = [*map(len, columns)]
         if max(lengths) - min(lengths) > _AHEAD:
             return None
-        return list(zip(times, zip(*columns, strict=False), strict=False))
+        return np.array([*zip(*columns, strict=False)]).reshape(-1, 4)
 
     def note(self, answer: Any) -> bool:
         """Note the newest time of an answer; whether it has new samples."""
         rows = self.rows(answer)
-        times = _values(answer, self.time) if rows is None else [at for at, _ in rows]
+        times = _values(answer, self.time) if rows is None else rows[:, 0].tolist()
         known = [at for at in times if math.isfinite(at)]
         self.newest = known[-1] if known else self.newest
         return bool(known)
 
 
+@dataclass
 class PhyphoxPhone(LoopTransport):
     """
     Transport of the answers of a phone, and reader of them.
@@ -104,11 +105,10 @@ class PhyphoxPhone(LoopTransport):
 
     """
 
-    def __init__(self, url: str, every: float) -> None:
-        self.url = url
-        self._every = every
-        self.silence = 10.0
-        self._sensors: list[_Sensor] = []
+    url: str
+    every: float
+    _sensors: list[_Sensor] = field(default_factory=list, init=False)
+    silence = 10.0
 
     def __str__(self) -> str:
         """Return its address."""
@@ -133,7 +133,7 @@ class PhyphoxPhone(LoopTransport):
                 if any([each.note(answer) for each in self._sensors]):
                     heard = asked
                     receiver.deliver(Message(json.dumps(answer).encode(), '/get'))
-                await asyncio.sleep(max(self._every - (loop.time() - asked), 0.0))
+                await asyncio.sleep(max(self.every - (loop.time() - asked), 0.0))
 
     async def _look(self, session: aiohttp.ClientSession) -> None:
         """Take the newest sample that is there now as the one to go on from."""
@@ -171,40 +171,37 @@ class PhyphoxPhone(LoopTransport):
             rows = each.rows(answer)
             if rows is None:
                 return [Refusal(_KIND, f'buffers of the {each.quantity} differ in length')]
-            good = [row for row in rows if math.isfinite(row[0])]
+            good = rows[np.isfinite(rows[:, 0])]
             found += [Refusal(_KIND, 'its time is no number')] * (len(rows) - len(good))
-            each.waiting.extend(good)
-            each.is_heard |= bool(each.waiting)
+            each.waiting = np.concatenate([each.waiting, good])[-_WAITING:]
+            each.is_heard |= len(each.waiting) > 0
         # What sends nothing while another sensor does is one that the phone lacks.
-        waiting = [each.waiting for each in self._sensors if each.waiting]
-        spans = [samples[-1][0] - samples[0][0] for samples in waiting]
-        is_late = max(spans, default=0.0) > _PATIENCE
+        is_late = max(np.diff(each.waiting[:, 0]).sum() for each in self._sensors) > _PATIENCE
         first, *others = (each for each in self._sensors if each.is_heard or not is_late)
         if others:
-            return found + _joined(first.waiting, others[0].waiting)
-        found += [MotionReading(at, **{first.quantity: values}) for at, values in first.waiting]
-        first.waiting.clear()
-        return found
+            return found + _joined(first, others[0])
+        samples = first.waiting.tolist()
+        first.waiting = first.waiting[:0]
+        return found + [MotionReading(at, **{first.quantity: (*axes,)}) for at, *axes in samples]
 
 
-def _joined(forces: deque[Sample], rates: deque[Sample]) -> list[MotionReading | Refusal]:
+def _joined(force: _Sensor, rate: _Sensor) -> list[MotionReading]:
     """Read accelerations with the rate at their times, up to the newest rate."""
-    found = list[MotionReading | Refusal]()
-    times = [at for at, _ in rates]
-    columns = list(zip(*(values for _, values in rates), strict=True))
-    while times and forces and forces[0][0] <= times[-1]:
-        at, force = forces.popleft()
-        if times[0] <= at and len(times) > 1:
-            rate = tuple(float(np.interp(at, times, column)) for column in columns)
-            found.append(MotionReading(at, force, rate))
-            while rates[1][0] < at:
-                rates.popleft()
-    return found
+    samples, times = force.waiting, rate.waiting[:, 0]
+    if not len(times):
+        return []
+    is_due = samples[:, 0] <= times[-1]
+    force.waiting = samples[~is_due]
+    samples = samples[is_due & (samples[:, 0] >= times[0])]
+    rates = [np.interp(samples[:, 0], times, axis).tolist() for axis in rate.waiting[:, 1:].T]
+    turns = zip(*rates, strict=True)
+    both = zip(samples.tolist(), turns, strict=True)
+    return [MotionReading(at, (*axes,), turn) for (at, *axes), turn in both]
 
 
 def _sensors_of(config: Any) -> list[_Sensor]:
     """Return the sensors of an experiment by ``/config``; a `ConnectionError` without any."""
-    sources: dict[str, Mapping[str, Any]] = {}
+    sources = dict[str, Mapping[str, Any]]()
     for each in map(object_of, list_of(value_at(config, 'inputs'))):
         named = ChainMap(*map(object_of, list_of(each.get('outputs'))))
         if {'x', 'y', 'z', 't'} <= named.keys():

@@ -53,7 +53,7 @@ class SenderClock:
         """Why no time can be told, and what to do; empty if it can, or not yet."""
         self.jumps = 0
         """Number of times that it was set anew."""
-        self._backs: deque[float] = deque(maxlen=_MIXED)
+        self._backs = deque[float](maxlen=_MIXED)
         self._previous = self._arrival = -math.inf
         self._first = _NEVER
         self._count = 0
@@ -77,10 +77,15 @@ class SenderClock:
             return False
         assert self.ticks is not None
         difference = arrival - stamp / self.ticks
-        if math.isinf(self._offset):
-            self._begin(difference, arrival, stamp)
-        elif abs(difference - self._offset) > _JUMP:
-            return self._is_set_anew(difference, arrival, stamp)
+        is_first = math.isinf(self._offset)
+        if is_first or abs(difference - self._offset) > _JUMP:
+            self._jumped_at = min(self._jumped_at, arrival)
+            if not is_first and arrival - self._jumped_at < _PATIENCE:
+                return False
+            self.jumps += not is_first
+            self._offset = self._low = self._low_before = difference
+            self._window_ends = arrival + _WINDOW
+            self._newest = stamp
         self._jumped_at = math.inf
         first = stamp if earliest is None else earliest
         self._follow(difference, arrival, (first - self._newest) / self.ticks)
@@ -118,20 +123,6 @@ class SenderClock:
             return False
         self.ticks = unit
         self.problem = ''
-        return True
-
-    def _begin(self, difference: float, arrival: float, stamp: float) -> None:
-        self._offset = self._low = self._low_before = difference
-        self._window_ends = arrival + _WINDOW
-        self._newest = stamp
-
-    def _is_set_anew(self, difference: float, arrival: float, stamp: float) -> bool:
-        self._jumped_at = min(self._jumped_at, arrival)
-        if arrival - self._jumped_at < _PATIENCE:
-            return False
-        self.jumps += 1
-        self._jumped_at = math.inf
-        self._begin(difference, arrival, stamp)
         return True
 
     def _follow(self, difference: float, arrival: float, passed: float) -> None:

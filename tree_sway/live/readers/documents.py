@@ -16,8 +16,11 @@ _KIND = 'JSON'
 
 def read_document(document: Any, names: WindNames) -> Readings:
     """Read a document; nothing of None. Where ``names`` have a path, that decides."""
-    if names.speed is None and is_tempest(document):
-        return read_tempest(document)
-    if names.speed is None and conditions_of(document):
-        return read_weatherlink(document)
-    return () if document is None else names.read(document, _KIND)
+    if document is None:
+        return ()
+    if not names.speed:
+        if is_tempest(document):
+            return read_tempest(document)
+        if conditions_of(document):
+            return read_weatherlink(document)
+    return names.read(document, _KIND)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from operator import itemgetter
 
 from tree_sway.core.wind import is_wind
-from tree_sway.files import pairs_of, unit_factor
+from tree_sway.files import object_of, pairs_of, unit_factor
 from tree_sway.files.wind import (
     INSTRUMENTS,
     LOGGED,
@@ -95,21 +95,22 @@ class InstrumentLines:
         lines = message.data.decode('utf-8', 'replace').splitlines()
         if len(lines) > _MOST_LINES:
             found.append(Refusal('lines', f'more than {_MOST_LINES} lines in a message'))
-        for line in lines[:_MOST_LINES]:
-            if not line.strip():
-                continue
+        for line in filter(str.strip, lines[:_MOST_LINES]):
             for each in self._read(line):
                 is_good = isinstance(each, WindReading) and is_wind(each.speed, each.up, 0.0)
                 if is_good and not self.reading:
                     self.found = each.kind
-                if not self.reading or each.kind == self.reading:
+                if self.reading in ('', each.kind):
                     found.append(each)
         return found
 
     def _read(self, line: str) -> Iterator[Reading]:
         """Read a line; nothing if no reader recognises it."""
         if line.lstrip().startswith(('{', '[')):
-            yield from self._read_json(line)
+            message = Message(line.encode())
+            document = parse_json(message.data)
+            is_delta = 'updates' in object_of(document)  # of Signal K, as its own source reads it
+            yield from self._signalk(message) if is_delta else read_document(document, self.names)
             return
         heading = self.heading
         reading = (
@@ -121,13 +122,6 @@ class InstrumentLines:
             yield reading
         elif named := pairs_of(line):
             yield from self.names.read(named, 'name=value')
-
-    def _read_json(self, line: str) -> Readings:
-        """Read a document, of Signal K as its own source does."""
-        document = parse_json(line.encode())
-        if isinstance(document, dict) and 'updates' in document:
-            return self._signalk(Message(line.encode()))
-        return read_document(document, self.names)
 
 
 def lines_of(address: SourceAddress) -> InstrumentLines:

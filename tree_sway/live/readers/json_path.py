@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 import json
 import math
 import re
@@ -20,31 +21,17 @@ _LONGEST = 40
 """Length of the longest text that may be a date."""
 
 
-class JsonPath:
+@lru_cache
+def steps_of(path: str) -> tuple[str | int, ...]:
     """
-    A path of names and of indices in brackets; ``$.`` may begin it.
+    Return the names and places of a path, which ``$.`` may begin, for `value_at`.
 
-    Raises
-    ------
-    ParameterError
-        Text that is no path.
-
+    Raises a `ParameterError` for text that is no path.
     """
-
-    def __init__(self, text: str) -> None:
-        if not _PATH.fullmatch(text):
-            raise ParameterError(
-                f"'{text}' is no path", cure='write it as data.conditions[0].speed'
-            )
-        self.text = text
-        self._steps: list[str | int] = [
-            int(index) if index else name
-            for index, name in _STEP.findall(text.removeprefix('$').removeprefix('.'))
-        ]
-
-    def find(self, document: Any) -> Any:
-        """Return the value, None where there is none."""
-        return value_at(document, *self._steps)
+    if not _PATH.fullmatch(path):
+        raise ParameterError(f"'{path}' is no path", cure='write it as data.conditions[0].speed')
+    named = _STEP.findall(path.removeprefix('$').removeprefix('.'))
+    return tuple(int(index) if index else name for index, name in named)
 
 
 def value_at(document: Any, *steps: str | int) -> Any:

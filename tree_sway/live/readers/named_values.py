@@ -12,12 +12,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import Any
 
 from tree_sway.files import folded, rank_of, SENDERS, unit_factor, unit_in_name
 from tree_sway.files.motion import flat, unit_beside
 from tree_sway.files.wind import number, Reading, reading_of, Refusal
-from tree_sway.live.readers.json_path import JsonPath
+from tree_sway.live.readers.json_path import steps_of, value_at
 from tree_sway.live.source_address import SourceAddress
 
 _LONGEST = 120
@@ -35,7 +35,7 @@ class WindNames:
     Parameters
     ----------
     speed, direction, gust
-        Paths of the values; found by their usual names if None.
+        Paths of the values; found by their usual names if empty.
     unit
         Unit of speeds without one in their names, or the path of a text that is the unit.
     interval
@@ -43,9 +43,9 @@ class WindNames:
 
     """
 
-    speed: JsonPath | None = None
-    direction: JsonPath | None = None
-    gust: JsonPath | None = None
+    speed: str = ''
+    direction: str = ''
+    gust: str = ''
     unit: str = ''
     interval: float | None = None
 
@@ -55,31 +55,30 @@ class WindNames:
         leaves = dict(islice(flat(whole, lists=True), _MOST))
         common = self._unit(document)
 
-        def found(path: JsonPath | None, quantity: str) -> _Found | None:
-            if path is None:
-                return _by_name(leaves, quantity, common)
-            value = path.find(document)
-            return None if value is None else _Found(value, common)
+        def found(path: str, quantity: str) -> _Found:
+            if path:
+                return value_at(document, *steps_of(path)), common
+            return _by_name(leaves, quantity, common)
 
-        speed = found(self.speed, 'wind_speed')
+        speed, unit = found(self.speed, 'wind_speed')
         if speed is None:
             return []
-        factor = speed.factor
+        factor = unit_factor('speed', unit or 'm/s')
         if factor is None:
-            return [Refusal(kind, f"unknown unit '{speed.unit[:20]}'")]
-        direction = found(self.direction, 'wind_direction')
-        angle = None if direction is None else direction.value
-        gust = found(self.gust, 'gust')
+            return [Refusal(kind, f"unknown unit '{unit[:20]}'")]
+        direction, _ = found(self.direction, 'wind_direction')
+        gust, its_unit = found(self.gust, 'gust')
+        size, in_si = number(gust), unit_factor('speed', its_unit or 'm/s')
         return [
             reading_of(
                 kind,
-                speed.value,
-                None if angle in _NO_DIRECTION else angle,
+                speed,
+                None if direction in _NO_DIRECTION else direction,
                 factor=factor,
-                gust=None if gust is None else gust.speed,
+                gust=None if size is None or in_si is None else size * in_si,
                 interval=self.interval,
                 sender=_sender(leaves),
-                assumed='' if speed.unit else NO_UNIT,
+                assumed='' if unit else NO_UNIT,
             )
         ]
 
@@ -87,7 +86,7 @@ class WindNames:
         """Text of the unit of speeds; empty where nothing tells it."""
         if not self.unit or unit_factor('speed', self.unit) is not None:
             return self.unit
-        found = JsonPath(self.unit).find(document)
+        found = value_at(document, *steps_of(self.unit))
         return found if isinstance(found, str) and found else self.unit
 
 
@@ -97,8 +96,9 @@ def names_of(address: SourceAddress) -> WindNames:
 
     Raises a `ParameterError` for text that is no path.
     """
-    texts = map(address.text_of, ('speed', 'direction', 'gust'))
-    speed, direction, gust = (JsonPath(text) if text else None for text in texts)
+    speed, direction, gust = map(address.text_of, ('speed', 'direction', 'gust'))
+    for path in filter(None, (speed, direction, gust)):
+        steps_of(path)
     return WindNames(speed, direction, gust, address.text_of('unit'))
 
 
@@ -106,42 +106,27 @@ _NO_DIRECTION = ('', 'VRB')
 """Cells of a direction that is not measured, or variable."""
 
 
-class _Found(NamedTuple):
-    """A value of a document, and the unit of speeds there; empty where nothing tells it."""
-
-    value: Any
-    unit: str
-
-    @property
-    def factor(self) -> float | None:
-        """Metres per second in the unit; None for an unknown one."""
-        return unit_factor('speed', self.unit or 'm/s')
-
-    @property
-    def speed(self) -> float | None:
-        """Value in [m/s]; None where it is no number, or in an unknown unit."""
-        size, factor = number(self.value), self.factor
-        return None if size is None or factor is None else size * factor
+_Found = tuple[Any, str]
+"""A value of a document or None, and the unit of speeds there; empty where nothing tells it."""
 
 
-def _by_name(leaves: Mapping[str, str], quantity: str, common: str) -> _Found | None:
+def _by_name(leaves: Mapping[str, str], quantity: str, common: str) -> _Found:
     """Find a quantity by its usual names, with the unit beside it, in its name, or of all."""
     # Longer names are none, and would stay in the cache.
-    last_of = {name: name.rpartition('.')[2] for name in leaves if len(name) <= _LONGEST}
-    ranks = {name: rank_of(name, quantity) for name, last in last_of.items() if last[1:]}
+    looked_at = [name for name in leaves if len(name) <= _LONGEST and name.rpartition('.')[2][1:]]
     # A boat has a speed as well as a wind_speed.
     known = [
         ('wind' not in name.lower(), rank, name.count('.'), name)
-        for name, rank in ranks.items()
-        if rank is not None
+        for name in looked_at
+        if (rank := rank_of(name, quantity)) is not None
     ]
     if not known:
-        return None
+        return None, ''
     name = min(known)[-1]
     has_parts = name.endswith('.value')
     beside = unit_beside(leaves, name) if has_parts else leaves.get(f'{name}_unit')
     last = name.removesuffix('.value').rpartition('.')[2]
-    return _Found(leaves[name], beside or unit_in_name(last, quantity) or common)
+    return leaves[name], beside or unit_in_name(last, quantity) or common
 
 
 def _sender(leaves: Mapping[str, str]) -> str:

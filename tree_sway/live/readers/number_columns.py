@@ -49,7 +49,7 @@ def columns_of(text: str) -> tuple[str, ...]:
 
 
 def read_numbers(
-    line: str, columns: Sequence[str], heading: float, factor: float, no_unit: str = ''
+    line: str, columns: Sequence[str], heading: float, factor: float, no_unit: str
 ) -> Reading | None:
     """
     Read a line; None if it has anything but numbers.

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from tree_sway.files import object_of
 from tree_sway.files.wind import reading_of, Readings, tempest_values
 
 KIND = 'rapid_wind'
@@ -18,7 +19,7 @@ KIND = 'rapid_wind'
 
 def is_tempest(document: Any) -> bool:
     """Whether a document is a message of a Tempest's hub."""
-    return isinstance(document, dict) and 'type' in document and 'hub_sn' in document
+    return object_of(document).keys() >= {'type', 'hub_sn'}
 
 
 def read_tempest(document: Any) -> Readings:

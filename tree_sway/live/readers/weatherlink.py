@@ -13,7 +13,7 @@ from typing import Any
 
 from tree_sway.files import list_of, object_of
 from tree_sway.files.wind import Readings
-from tree_sway.live.readers.json_path import JsonPath, parse_json
+from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.transports.transport import Message
 
@@ -21,11 +21,7 @@ _KIND = 'WeatherLink Live'
 _STATION = 1
 """Type of the record of a station with an anemometer."""
 _NAMES = WindNames(
-    JsonPath('wind_speed_last'),
-    JsonPath('wind_dir_last'),
-    JsonPath('wind_speed_hi_last_2_min'),
-    unit='mph',
-    interval=0.0,
+    'wind_speed_last', 'wind_dir_last', 'wind_speed_hi_last_2_min', unit='mph', interval=0.0
 )
 
 

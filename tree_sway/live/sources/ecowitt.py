@@ -30,10 +30,10 @@ _NAMES = WindNames()
 def read_upload(message: Message) -> Readings:
     """Read a form of the two protocols."""
     try:
-        form = parse_qsl(message.data.decode('utf-8', 'replace'), max_num_fields=_MOST_FIELDS)
+        text = message.data.decode('utf-8', 'replace')
+        named = dict(parse_qsl(text, max_num_fields=_MOST_FIELDS))
     except ValueError:
         return [Refusal(_KIND, 'too many fields')]
-    named = dict(form)
     if secret := named.pop('PASSKEY', ''):
         named.setdefault('ID', f'station {sha256(secret.encode()).hexdigest()[:8]}')
     return _NAMES.read(named, _KIND)

@@ -18,26 +18,12 @@ from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
-_SHORTEST, _LONGEST = 0.2, 86_400.0
-"""Interval of requests [s]."""
-_OPTIONS = (
-    *('speed', 'direction', 'gust', 'unit', 'every', 'token_file'),
-    *('name', 'mean', 'from_degrees'),
-)
+_OPTIONS = 'speed direction gust unit every token_file name mean from_degrees'.split()
 """Options of ours in a query; others belong to the server."""
 _ALIKE = 0.8
 """Share of common letters from which an option of the query is a misspelt one of ours."""
 
 _EXPECTS = 'JSON with a wind speed; say where: speed=PATH&direction=PATH&unit=km/h'
-
-
-def _refuse_misspelt(address: SourceAddress, name: str, value: str) -> None:
-    """Raise a `ParameterError` for an option of ours with another letter: servers get the rest."""
-    guess = nearest(name, _OPTIONS, _ALIKE)
-    is_theirs = name == 'units' and unit_factor('speed', value) is None
-    if guess and not is_theirs:
-        cure = f"{guess} Behind a '#' are options of ours alone, and all of the query is sent"
-        raise address.error(f"no option '{name}'", cure)
 
 
 def open_source(address: SourceAddress) -> Source:
@@ -51,11 +37,16 @@ def open_source(address: SourceAddress) -> Source:
     parts = address.parts
     if not parts.fragment:
         theirs = [each for each in parse_qsl(parts.query, True) if each[0] not in _OPTIONS]
-        for name, value in theirs:
-            _refuse_misspelt(address, name, value)
+        for name, value in theirs:  # of which one with another letter is meant to be ours
+            is_theirs = name == 'units' and unit_factor('speed', value) is None
+            if not is_theirs and (guess := nearest(name, _OPTIONS, _ALIKE)):
+                cure = (
+                    f"{guess} Behind a '#' are options of ours alone, and all of the query is sent"
+                )
+                raise address.error(f"no option '{name}'", cure)
         address.options = {k: v for k, v in address.options.items() if k in _OPTIONS}
         parts = parts._replace(query=urlencode(theirs))
-    every = address.number('every', 60.0, _SHORTEST, _LONGEST)
+    every = address.number('every', 60.0, 0.2, 86_400.0)
     url = parts._replace(fragment='').geturl()
     transport = HttpPoll(url, every, address.headers())
     interval = every if every >= LEAST_INTERVAL else 0.0

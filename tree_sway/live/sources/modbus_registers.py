@@ -24,7 +24,6 @@ _KIND = 'Modbus'
 _LARGEST = 65_535
 _MOST = 60
 _BAUD = 9600
-_NO_DIRECTION = -1
 _NO_VALUE = (0x7FFF, -0x8000, -1)
 """Words of a register without a value: the largest and least, and all bits."""
 
@@ -39,14 +38,14 @@ def open_source(address: SourceAddress) -> Source:
     if place is None:
         raise address.error('no host or device', 'give modbus:HOST or modbus:/dev/ttyUSB0:9600')
     speed = address.whole('speed', 0, 0, _LARGEST)
-    direction = address.whole('direction', _NO_DIRECTION, _NO_DIRECTION, _LARGEST)
+    has_vane = bool(address.text_of('direction'))
+    direction = address.whole('direction', speed, 0, _LARGEST)
     scale = address.number('scale', 0.1, 1e-6, 1e3)
     turn = address.number('direction_scale', 1.0, 1e-6, 1e3)
     heading = address.angle('heading_degrees')
     kind = address.text_of('kind', 'holding')
-    registers = [speed, direction] if direction != _NO_DIRECTION else [speed]
-    first = min(registers)
-    count = max(registers) - min(registers) + 1
+    first = min(speed, direction)
+    count = abs(speed - direction) + 1
     if kind not in KINDS or count > _MOST:
         raise address.error(
             f'kind is {kind}, {count} registers', f'use {" or ".join(KINDS)}, up to {_MOST} apart'
@@ -59,7 +58,7 @@ def open_source(address: SourceAddress) -> Source:
         if words[speed - first] in _NO_VALUE:
             return [Refusal(_KIND, f'no speed: the register is {words[speed - first]}')]
         degrees: float | str | None = None
-        if direction != _NO_DIRECTION:
+        if has_vane:
             word = words[direction - first]
             degrees = 'none' if word in _NO_VALUE else turn * word
         return [reading_of(_KIND, scale * words[speed - first], degrees, turn=heading)]

@@ -5,10 +5,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from urllib.parse import unquote
 
-from tree_sway.files.wind import bearing_of, Reading, Readings, WindReading
+from tree_sway.files.wind import bearing_of, Readings, WindReading
 from tree_sway.live.readers.instrument_lines import lines_of
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
@@ -33,7 +33,7 @@ def open_source(address: SourceAddress) -> Source:
     vane = address.text_of('direction_topic')
     transport = broker_of(address, (topic, vane) if vane else (topic,))
     expects = 'JSON with a wind speed (say where: field=PATH), or a number'
-    return Source(transport, _WithVane(read, vane) if vane else read, topic, expects)
+    return Source(transport, _with_vane(read, vane) if vane else read, topic, expects)
 
 
 def broker_of(address: SourceAddress, topics: tuple[str, ...]) -> Mqtt:
@@ -51,21 +51,18 @@ def broker_of(address: SourceAddress, topics: tuple[str, ...]) -> Mqtt:
     )
 
 
-@dataclass
-class _WithVane:
-    """Reader of speeds, with the newest direction of a topic of its own."""
+def _with_vane(read: _Read, topic: str) -> _Read:
+    """Return a reader of speeds, with the newest direction of a topic of its own."""
+    bearing: float | None = None
 
-    read: _Read
-    topic: str
-    bearing: float | None = field(default=None, init=False)
-
-    def __call__(self, message: Message) -> Readings:
-        if message.origin == self.topic:
-            self.bearing = bearing_of(message.data.decode('utf-8', 'replace'))
+    def turned(message: Message) -> Readings:
+        nonlocal bearing
+        if message.origin == topic:
+            bearing = bearing_of(message.data.decode('utf-8', 'replace'))
             return ()
-        return [self._turned(each) for each in self.read(message)]
+        return [
+            replace(each, bearing=bearing) if isinstance(each, WindReading) else each
+            for each in read(message)
+        ]
 
-    def _turned(self, reading: Reading) -> Reading:
-        if not isinstance(reading, WindReading):
-            return reading
-        return replace(reading, bearing=self.bearing)
+    return turned

@@ -7,7 +7,7 @@ Documents of known services and instruments that are asked for now and then: `po
 ``server``, which is that of another installation; ``example`` is the cure for a wrong place.
 ``every`` is the time between requests, ``interval`` the length of a mean that the document does
 not tell, and ``lasts`` the time for which it is used [s]; ``upper`` says that capital letters are
-meant. ``read`` is a function of `readers`, or a class that is made with the row.
+meant. ``read`` is a function of `readers`, or one that makes such a function of the row.
 """
 
 from __future__ import annotations

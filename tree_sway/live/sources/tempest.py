@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from tree_sway.files import object_of
 from tree_sway.files.wind import Readings
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.tempest import read_tempest
@@ -24,8 +25,8 @@ def open_source(address: SourceAddress) -> Source:
 
     def read(message: Message) -> Readings:
         document = parse_json(message.data)
-        is_other = isinstance(document, dict) and document.get('serial_number') != serial
-        return () if serial and is_other else read_tempest(document)
+        is_other = serial and object_of(document).get('serial_number') != serial
+        return () if is_other else read_tempest(document)
 
     expects = "a Tempest hub's rapid_wind"
     return Source(Udp('', port, is_shared=True, silence=30.0), read, 'Tempest', expects)

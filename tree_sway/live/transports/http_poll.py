@@ -7,7 +7,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-import math
 from typing import Any
 
 import aiohttp
@@ -52,9 +51,8 @@ class HttpPoll(LoopTransport):
     """An address that is requested every some seconds [s], with further headers."""
 
     url: str
-    every: float = 60.0
+    every: float
     headers: Mapping[str, str] = field(default_factory=dict, repr=False)
-    silence: float = math.inf
 
     def __str__(self) -> str:
         """Return its address, without a query that may have a key in it."""

@@ -8,7 +8,6 @@ import asyncio
 from dataclasses import dataclass, field
 import hmac
 import logging
-import math
 import socket
 from urllib.parse import parse_qs
 
@@ -25,7 +24,7 @@ _TIMEOUT = 5.0
 """Longest time in which a body must have arrived [s]."""
 _MOST_SOCKETS = 16
 _MOST_FIELDS = 500
-_OF_BROWSERS = ('Origin', 'Referer', 'Accept-Language', 'Sec-Fetch-Site', 'Sec-Fetch-Mode')
+_OF_BROWSERS = 'Origin Referer Accept-Language Sec-Fetch-Site Sec-Fetch-Mode'.split()
 """Headers of browsers: any page can make one send a request, as by an image."""
 _WORDS = ('PASSKEY', 'PASSWORD')
 """Fields with the passkey of Ecowitt and of Weather Underground."""
@@ -42,9 +41,8 @@ class HttpServer(LoopTransport):
     """
 
     port: int
-    host: str = '127.0.0.1'
-    passkey: str = field(default='', repr=False)
-    silence: float = math.inf
+    host: str
+    passkey: str = field(repr=False)
 
     def __str__(self) -> str:
         """Return its address."""

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 import time
@@ -70,15 +71,16 @@ class Link(Worker):
         self.connections = self.messages = 0
         self.failure = ''
         """Reason of the last failure; empty while there is a connection."""
-        self.refused: dict[str, int] = {}
+        self.refused = Counter[str]()
         """Numbers of what was refused, by cause."""
+        self._limit = self.transport.silence if self.silence is None else self.silence
         self._latest = 0.0
         self._pace = Pace()
 
     @property
     def is_over(self) -> bool:
         """Whether the transport is to end: on request, or as nothing came; asked often."""
-        return self._stopping.is_set() or self._is_silent
+        return self.is_stopping or self._is_silent
 
     def opened(self) -> None:
         """Note that the connection is made."""
@@ -110,16 +112,12 @@ class Link(Worker):
         if is_new and len(self.refused) >= _MOST_CAUSES:
             is_new = False
             cause = 'other causes'
-        self.refused[cause] = self.refused.get(cause, 0) + count
+        self.refused[cause] += count
         return is_new
 
     def pause(self, seconds: float) -> None:
         """Wait some seconds [s], or until the thread is stopped."""
         self._stopping.wait(seconds)
-
-    @property
-    def _limit(self) -> float:
-        return self.transport.silence if self.silence is None else self.silence
 
     @property
     def _is_silent(self) -> bool:
@@ -128,14 +126,14 @@ class Link(Worker):
     def _run(self) -> None:
         pause = self.first_pause
         self._pace.begin()
-        while not self._stopping.is_set():
+        while not self.is_stopping:
             before = self.messages
             try:
                 self.transport.listen(self)
                 why = f'nothing for {self._limit:g} s' if self._is_silent else 'it ended'
             except Exception as error:  # an instrument may fail in any way
                 why = failure_text(error)
-            if not self._stopping.is_set() and (self.is_up or why != self.failure):
+            if not self.is_stopping and (self.is_up or why != self.failure):
                 self.log(f'{self.transport}: {why}; trying again')
             self.is_up = False
             self.failure = why

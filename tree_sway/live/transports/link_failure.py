@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Why a connection failed, with what to do about it."""
+"""Why a connection failed, with what to do about it: `link_failures.csv` has it by the error."""
 
 from __future__ import annotations
 
@@ -10,21 +10,12 @@ import socket
 import ssl
 
 from tree_sway.errors import shown
+from tree_sway.tables import table_beside
 
-_ANSWERS = 'does the address answer from this machine, as by ping?'
 _CURES = {
-    errno.ECONNREFUSED: 'refused: is its sender on, and are address and port those of it?',
-    errno.EADDRINUSE: 'another program listens to this port: end it, or choose another port',
-    errno.EADDRNOTAVAIL: 'this machine has no such address: leave it out, to listen on all',
-    errno.EACCES: 'no permission: a serial port needs the group dialout (sudo usermod -aG dialout '
-    '$USER, then log in again), and a port below 1024 the superuser',
-    errno.EBUSY: 'another program uses this device: end it',
-    errno.ENOENT: 'no such device: is it plugged in? /dev/serial/by-id lists them, on Windows the '
-    'Device Manager does',
-    errno.EHOSTUNREACH: f'not reached: {_ANSWERS}',
-    errno.ENETUNREACH: f'no network to it: {_ANSWERS}',
-    errno.ETIMEDOUT: f'no answer: {_ANSWERS}',
-}  # fmt: skip
+    getattr(errno, each['error']): each['cure']
+    for each in table_beside(__file__, 'link_failures.csv')
+}
 _LONGEST = 240
 _NUMBER = re.compile(r'(?:\[Errno |Error\()(\d+)')
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 import asyncio
+import math
 
 from tree_sway.live.transports.http_failure import failure_without_address
 from tree_sway.live.transports.link import Link
@@ -16,6 +17,9 @@ _LOOK = 0.05
 
 class LoopTransport(ABC):
     """A transport that awaits what comes; errors of HTTP do not tell its whole address."""
+
+    silence = math.inf
+    """Longest time without a message [s]."""
 
     def listen(self, receiver: Link) -> None:
         """Deliver messages until the work ends or the receiver is over; raise what it raises."""

@@ -14,12 +14,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-import importlib
 from itertools import cycle
 import socket
 import struct
 import time
-from typing import Any
 
 from tree_sway.extras import refuse_missing
 from tree_sway.live.transports.link import Link
@@ -64,7 +62,7 @@ class Modbus:
     port: int = PORT
     baud: int | None = None
     every: float = 1.0
-    silence: float = 10.0
+    silence = 10.0
 
     def __post_init__(self) -> None:
         """Check that the library for a device is there."""
@@ -130,7 +128,8 @@ class Modbus:
     @contextmanager
     def _line(self) -> Iterator[Exchange]:
         """RTU: a checksum comes last."""
-        serial: Any = importlib.import_module('serial')
+        import serial
+
         with serial.Serial(
             self.place, self.baud, timeout=_TIMEOUT, write_timeout=_TIMEOUT
         ) as port:

@@ -13,7 +13,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field
-import math
 import ssl
 import struct
 
@@ -50,7 +49,6 @@ class Mqtt(LoopTransport):
     user: str = ''
     password: str = field(default='', repr=False)
     is_encrypted: bool = False
-    silence: float = math.inf
 
     def __str__(self) -> str:
         """Return its address."""

@@ -5,8 +5,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-import importlib
-from typing import Any
 
 from tree_sway.extras import refuse_missing
 from tree_sway.live.transports.link import Link
@@ -48,7 +46,8 @@ class SerialPort:
 
     def listen(self, receiver: Link) -> None:
         """Deliver the lines of the port."""
-        serial: Any = importlib.import_module('serial')
+        import serial
+
         with serial.Serial(self.device, self.baud, timeout=READ_FOR) as port:
             receiver.opened()
             deliver_lines(

@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 import math
-import socket
 import time
 
 from tree_sway.live.transports.lines import Lines, LONGEST
@@ -16,24 +15,9 @@ from tree_sway.live.transports.transport import Message
 
 READ_FOR = 0.1
 """Interval at which a silent stream checks whether to end [s]."""
-
-
-_BLOCK = 65_536
-"""Most bytes that are read at once."""
 _LONGEST_LINE = 2.0
 """Time [s] in which a line of an instrument ends."""
 _NO_END = 'bytes without the end of a line: is the baud rate that of the instrument?'
-
-
-def received(link: socket.socket) -> bytes:
-    """Return what comes to a socket within its timeout; a `ConnectionError` at its end."""
-    try:
-        data = link.recv(_BLOCK)
-    except TimeoutError:
-        return b''
-    if not data:
-        raise ConnectionError('closed by the other side')
-    return data
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 import socket
 
 from tree_sway.live.transports.link import Link
@@ -14,11 +13,12 @@ from tree_sway.live.transports.stream_lines import (
     NO_QUESTION,
     Question,
     READ_FOR,
-    received,
 )
 
 _CONNECT_FOR = 5.0
 """Longest wait for a connection [s]."""
+_BLOCK = 65_536
+"""Most bytes that are read at once."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,16 @@ class Tcp:
     def listen(self, receiver: Link) -> None:
         """Deliver the lines of the server."""
         with socket.create_connection((self.host, self.port), _CONNECT_FOR) as link:
+
+            def read() -> bytes:
+                try:
+                    data = link.recv(_BLOCK)
+                except TimeoutError:
+                    return b''
+                if not data:
+                    raise ConnectionError('closed by the other side')
+                return data
+
             receiver.opened()
             link.settimeout(READ_FOR)
-            deliver_lines(receiver, partial(received, link), link.sendall, self.question)
+            deliver_lines(receiver, read, link.sendall, self.question)

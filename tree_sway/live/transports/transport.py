@@ -11,6 +11,10 @@ Log = Callable[[str], None]
 """Function that is told a line of news."""
 
 
+def ignore(_: object) -> None:
+    """Do nothing with a reading: for a source whose readings no one else hears."""
+
+
 @dataclass(frozen=True, slots=True)
 class Message:
     """

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of a WebSocket, after a request that is sent first."""
+"""Texts of a WebSocket, after a request that is sent first."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class WebSocket(LoopTransport):
     """An address of the scheme ``ws`` or ``wss``, and a text to send when it is open."""
 
     url: str
-    hello: str = ''
-    headers: Mapping[str, str] = field(default_factory=dict, repr=False)
-    silence: float = 30.0
+    hello: str
+    headers: Mapping[str, str] = field(repr=False)
+    silence: float
 
     def __str__(self) -> str:
         """Return its address, without the query."""
@@ -41,11 +41,8 @@ class WebSocket(LoopTransport):
             session.ws_connect(self.url, heartbeat=_HEARTBEAT, max_msg_size=_LARGEST) as socket,
         ):
             receiver.opened()
-            if self.hello:
-                await socket.send_str(self.hello)
+            await socket.send_str(self.hello)
             async for message in socket:
                 if message.type is aiohttp.WSMsgType.TEXT:
                     receiver.deliver(Message(message.data.encode()))
-                elif message.type is aiohttp.WSMsgType.BINARY:
-                    receiver.deliver(Message(message.data))
             raise ConnectionError('closed by the other side')
