@@ -43,6 +43,26 @@ def test_an_outage_is_not_the_period_of_an_instrument(monkeypatch, before) -> No
     assert not told.is_live(last + 200.0)
 
 
+def test_a_quick_instrument_that_stops_is_not_live_for_long(monkeypatch) -> None:
+    told = Told(monkeypatch)
+    told.tell(*(0.1 * k for k in range(50)))
+    assert told.is_live(6.5)
+    assert not told.is_live(7.5)
+
+
+def test_samples_that_come_in_bundles_are_live_between_them(monkeypatch) -> None:
+    told = Told(monkeypatch)
+    told.tell(*(6.0 * k + 0.01 * j for k in range(5) for j in range(3)))
+    assert told.is_live(24.0 + 6.0)
+
+
+def test_what_is_about_something_else_is_counted_for_viewers(monkeypatch) -> None:
+    told = Told(monkeypatch)
+    told.tell(0.0)
+    told.tell(0.1, 0.2, line=b'hello')
+    assert told.wind.source['other'] == 2
+
+
 def test_two_outages_are_not_the_period_either(monkeypatch) -> None:
     told = Told(monkeypatch)
     told.tell(*range(10), HOUR, 2.0 * HOUR)

@@ -45,8 +45,8 @@ _LASTS = 3.0
 _QUEUE = 4096
 _OLDEST = 1.0
 """Age of the oldest sample that a run is given [s]."""
-_LIVE_FOR = 10.0
-"""Age [s] up to which the wind of an instant counts as live."""
+_LEAST, _LIVE_FOR = 2.0, 10.0
+"""Least age [s] up to which the wind of an instant counts as live: of even samples, of others."""
 _POINTS = 'N NE E SE S SW W NW'.split()
 
 
@@ -140,6 +140,7 @@ class LiveWind(LiveSource):
             'name': self.name,
             'state': self.state,
             'refused': dict(self.refused),
+            'other': self.other,
         }
         if newest is not None:
             east, north, _ = newest.velocity(self.bearing)
@@ -220,7 +221,9 @@ class LiveWind(LiveSource):
                 self._blown = max(self._blown, now - 1.0 / RATE)
                 self._expires = now - self.age + (self._source.lasts or _LASTS * interval)
             else:
-                self._expires = now + max(_LIVE_FOR, _LASTS * (period or 0.0))
+                lasts = _LASTS * (period or 0.0)
+                is_even = max(self._gaps, default=_LIVE_FOR) <= lasts
+                self._expires = now + max(_LEAST if is_even else _LIVE_FOR, lasts)
         self._heard(reading)
         if is_first:
             text = described(reading, self.bearing)

@@ -50,8 +50,8 @@ class Link(Worker):
     Connection over a transport; calls `take` with each message, in its own thread.
 
     A connection without a message for the time of `silence` [s], by default the transport's, is
-    closed and opened again, first after `first_pause` [s], and after twice as long each time up to
-    `longest_pause` [s]. An exception of `take` breaks it too.
+    closed and opened again at once, which is told the first time. After a failure, as of `take`,
+    that takes `first_pause` [s], and twice as long each time up to `longest_pause` [s].
     """
 
     transport: Transport
@@ -75,6 +75,8 @@ class Link(Worker):
         """Numbers of what was refused, by cause."""
         self._limit = self.transport.silence if self.silence is None else self.silence
         self._latest = 0.0
+        self._is_quiet = False
+        """Whether it was opened again as nothing came, and nothing has come since."""
         self._pace = Pace()
 
     @property
@@ -88,12 +90,16 @@ class Link(Worker):
         self.is_up = True
         self.failure = ''
         self.connections += 1
-        self.log(f'listening to {self.transport}')
+        if not self._is_quiet:
+            self.log(f'listening to {self.transport}')
 
     def deliver(self, message: Message) -> None:
         """Count a message and hand it on, unless too many come."""
         self._latest = time.monotonic()
         self.messages += 1
+        if self._is_quiet:
+            self._is_quiet = False
+            self.log(f'{self.transport}: messages come again')
         if self.admits(message):
             if self._pace.admits(len(message.data)):
                 self.take(message)
@@ -128,15 +134,19 @@ class Link(Worker):
         self._pace.begin()
         while not self.is_stopping:
             before = self.messages
+            is_silent = False
             try:
                 self.transport.listen(self)
-                why = f'nothing for {self._limit:g} s' if self._is_silent else 'it ended'
+                is_silent = self._is_silent
+                why = f'nothing for {self._limit:g} s' if is_silent else 'it ended'
             except Exception as error:  # an instrument may fail in any way
                 why = failure_text(error)
-            if not self.is_stopping and (self.is_up or why != self.failure):
+            is_told = self._is_quiet if is_silent else not self.is_up and why == self.failure
+            if not (self._stopping.is_set() or is_told):
                 self.log(f'{self.transport}: {why}; trying again')
             self.is_up = False
             self.failure = why
+            self._is_quiet = is_silent
             has_data = self.messages > before
             pause = self.first_pause if has_data else min(2.0 * pause, self.longest_pause)
-            self._stopping.wait(pause)
+            self._stopping.wait(0.0 if is_silent else pause)
