@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves import LeafClusters
-from tree_sway.core.model import MARGIN, StateBasis
+from tree_sway.core.model import MARGIN
 from tree_sway.core.run import basis_of, SwaySimulator
 from tree_sway.core.tree import Tree
 from tree_sway.errors import FormatError
@@ -64,7 +64,7 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
         )
     document = GltfDocument()
     poses = tree.rest_poses
-    joints = list(range(1, tree.n_segments + 1))
+    joints = [*range(1, tree.n_segments + 1)]
     root = document.add('nodes', name=tree.name, rotation=_Y_UP, children=joints)
     for name, pose in zip(tree.segment_names, poses.tolist(), strict=True):
         document.add('nodes', name=name, translation=pose[:3], rotation=pose[3:])
@@ -112,15 +112,18 @@ def morphing_tree(
     document = GltfDocument()
     rest = tree.rest_poses
     parts = parts_of(tree, leaves, _FEW_SHOOTS)
-    steps = [_swung(simulator, basis, k, storm[k]) for k in range(basis.n_coordinates)]
-    changes = [[_change(part, step) for step in steps] for part in parts]
+    swings = _SWING * np.diag(storm)
+    steps = [
+        [simulator.place_rotations(basis.rotations(each)).copy() for each in (swing, -swing)]
+        for swing in swings
+    ]
+    changes = [[_change(part, *step) for step in steps] for part in parts]
     places = [part.mesh.placed(rest) for part in parts]
     low, high = (limit(np.vstack(places), axis=0) for limit in (np.min, np.max))
     size = _MOVED * float((high - low)[:2].min())
     middle = 0.5 * (low + high)
     greatest = np.max([[np.abs(change).max() for change in each] for each in changes], axis=0)
     unit = storm * size / greatest
-    names = [f'sway {k + 1}' for k in range(basis.n_coordinates)]
     add = _add_shares if small else _add_floats
     primitives = []
     for part, points, moved in zip(parts, places, changes, strict=True):
@@ -135,9 +138,9 @@ def morphing_tree(
         'meshes',
         name=tree.name,
         primitives=primitives,
-        weights=[0.0] * len(names),
+        weights=[0.0] * len(storm),
         extras={
-            'targetNames': names,
+            'targetNames': [f'sway {k + 1}' for k in range(len(storm))],
             'unit': unit.tolist(),
             'storm': storm.tolist(),
             'basis': basis.digest,
@@ -214,25 +217,12 @@ def _inverse_matrices(poses: Floats) -> Any:
     return matrices_of(inverse).astype(np.float32)
 
 
-def _swung(
-    simulator: SwaySimulator, basis: StateBasis, k: int, size: float
-) -> tuple[Floats, Floats]:
-    """Poses with one coordinate at plus and at minus a share of its unit."""
-    coordinates = np.zeros(basis.n_coordinates)
-    coordinates[k] = _SWING * size
-    there, back = (
-        simulator.place_rotations(basis.rotations(each)).copy()
-        for each in (coordinates, -coordinates)
-    )
-    return there, back
-
-
-def _change(part: TreePart, step: tuple[Floats, Floats]) -> Floats:
-    """Return the motion of vertices per unit of a coordinate, by a central difference."""
+def _change(part: TreePart, there: Floats, back: Floats) -> Floats:
+    """Motion of vertices per unit of a coordinate, from poses at plus and minus `_SWING` of it."""
     mesh = part.mesh
     if part.is_wood:  # a ring moves with its centre, so that rounding keeps its shape
         mesh = mesh._replace(points=mesh.points * [1.0, 0.0, 0.0])
-    return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
+    return (0.5 / _SWING) * (mesh.placed(there) - mesh.placed(back))
 
 
 def _add_animation(document: GltfDocument, node: int, weights: Floats) -> None:

@@ -104,7 +104,7 @@ def _cone() -> Ints:
     far = near + SIDES
     around = np.column_stack([near, after, after + SIDES, near, after + SIDES, far])
     far_end = np.column_stack([0 * near, near, after])[1:-1] + SIDES
-    near_end = far_end[:, ::-1] - SIDES
+    near_end = far_end[:, [0, 2, 1]] - SIDES
     return np.vstack([around.reshape(-1, 3), near_end, far_end])
 
 
