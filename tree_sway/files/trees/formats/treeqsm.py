@@ -137,10 +137,10 @@ def _models(variables: Variables) -> Iterator[tuple[str, Variables]]:
     for name, value in variables.items():
         structs = _structs(value)
         for number, struct in enumerate(structs, start=1):
-            models = _structs(struct.get('cylinder', struct))
-            if models and 'radius' in models[0]:
-                own_name = f'{name}{number}' if len(structs) > 1 else name
-                yield own_name, models[0]
+            own_name = f'{name}{number}' if len(structs) > 1 else name
+            for model in _structs(struct.get('cylinder', struct))[:1]:
+                if 'radius' in model:
+                    yield own_name, model
 
 
 def _arrays(variables: Variables) -> Iterator[tuple[str, Floats]]:
@@ -162,7 +162,7 @@ def _structs(value: Any) -> list[Variables]:
     """Return the structs of an array of them, whose names are numbers, or a struct alone."""
     if not isinstance(value, dict):
         return []
-    if all(name.isdigit() for name in value):
+    if all(map(str.isdigit, value)):
         return [each for each in value.values() if isinstance(each, dict)]
     return [value]
 
