@@ -126,12 +126,12 @@ def opened_record(arguments: argparse.Namespace) -> WindRecord:
 
 def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
     """Open the record of the arguments, repeated, or simulated wind of their speed."""
-    if arguments.wind is not None:
-        record = opened_record(arguments)
-        if short := shorter_than(record.duration, getattr(arguments, 'seconds', None)):
-            say(short)
-        return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
-    return SimulatedWind(simulated_speed(arguments))
+    if arguments.wind is None:
+        return SimulatedWind(simulated_speed(arguments))
+    record = opened_record(arguments)
+    if short := shorter_than(record.duration, getattr(arguments, 'seconds', None)):
+        say(short)
+    return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
 
 
 def add_sway_arguments(

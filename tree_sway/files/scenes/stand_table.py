@@ -123,19 +123,18 @@ def _grown_kind(
     """
     key = species.key
     diameter = None
-    least = height_of_stem(key, 0.0)
-    most = height_of_stem(key, math.inf)
-    if not least <= height <= most:
-        nearest_height = min(max(height, least), most)
-        notes.append(f'{key} of {height:.3g} m: scaled from one of {nearest_height:.3g} m')
-        height = nearest_height
+    possible = max(height, height_of_stem(key, 0.0))
+    possible = min(possible, height_of_stem(key, math.inf))
+    if possible != height:
+        notes.append(f'{key} of {height:.3g} m: scaled from one of {possible:.3g} m')
     if slenderness:
-        low, high = stem_range(species, height)
-        diameter = min(max(height / slenderness, low), high)
-        if not low <= height / slenderness <= high:
+        low, high = stem_range(species, possible)
+        wanted = possible / slenderness
+        diameter = min(max(wanted, low), high)
+        if diameter != wanted:
             notes.append(
-                f'{key} of {height:.3g} m with stems of {height / slenderness:.3g} m: grown with '
+                f'{key} of {possible:.3g} m with stems of {wanted:.3g} m: grown with '
                 f'{diameter:.3g} m, as others would buckle'
             )
-    tree = grow(key, height, diameter, rng=np.random.default_rng(seed))
+    tree = grow(key, possible, diameter, rng=np.random.default_rng(seed))
     return TreeFile(tree, rooted(tree, species), key)
