@@ -121,10 +121,8 @@ def hinged_tree(simulator: SwaySimulator, *, has_twist_and_weight: bool = True) 
     root_stiffness = settings.root_stiffness or species.root_stiffness
     springs = _springs(tree, species, root_stiffness)[:, :n_axes]
     mass_matrix = hinges.mass_matrix()
-    moment = np.zeros(springs.shape)
-    weight_stiffness = sparse.csc_matrix(mass_matrix.shape)
-    if has_twist_and_weight:
-        moment, weight_stiffness = hinges.weight()
+    gravity = _GRAVITY if has_twist_and_weight else 0.0
+    moment, weight_stiffness = hinges.weight(gravity)
     circular_frequency = 2.0 * math.pi * float(simulator.frequencies(1)[0])
     stiffness = sparse.diags(springs.ravel()).tocsc()
     factor, share = _factor_on_springs(
@@ -313,7 +311,7 @@ class _Hinges:
                 total += jacobian.T @ sparse.diags(weight) @ jacobian
         return total
 
-    def weight(self) -> tuple[Floats, sparse.csc_matrix]:
+    def weight(self, gravity: float) -> tuple[Floats, sparse.csc_matrix]:
         """
         Moments of the weight about the hinges [N m], (n, k), and its stiffness, (k n, k n).
 
@@ -326,11 +324,11 @@ class _Hinges:
         turned = np.cross(self.axes, carried[:, None])
         lower = self.axes[self.hinge, :, None]
         upper = turned[self.body, None]
-        change = np.cross(lower, upper)[..., 2] * _GRAVITY
+        change = np.cross(lower, upper)[..., 2] * gravity
         # Hinges of one segment turn one after another.
         change[self.hinge == self.body] *= np.tri(self.n_axes).T
         row = np.repeat(self.numbers(self.hinge), self.n_axes, axis=1).ravel()
         column = np.tile(self.numbers(self.body), self.n_axes).ravel()
         half = sparse.csc_matrix((change.ravel(), (row, column)), self.shape)
-        moment = -_GRAVITY * turned[:, :, 2]
+        moment = -gravity * turned[:, :, 2]
         return moment, half + half.T - sparse.diags(half.diagonal())

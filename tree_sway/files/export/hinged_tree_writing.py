@@ -19,7 +19,6 @@ import re
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.drag import AIR_DENSITY
@@ -137,20 +136,19 @@ def _link(tree: Tree, hinged: HingedTree, i: int, radius: float) -> str:
 
 def _joints(hinged: HingedTree, segment: int) -> str:
     """Return the joints of a segment as MJCF."""
-    pairs = zip(hinged.stiffness[segment], hinged.reference[segment], strict=True)
+    springs = zip(_AXES.items(), hinged.stiffness[segment], hinged.reference[segment], strict=True)
     return '\n'.join(
         f'<joint name="{hinged.names[segment]}_{axis}" axis="{along}" '
         f'stiffness="{_text(stiffness)}" springref="{_text(reference)}" '
         f'damping="{_text(hinged.damping_time * stiffness)}"/>'
-        for (axis, along), (stiffness, reference) in zip(_AXES.items(), pairs, strict=True)
+        for (axis, along), stiffness, reference in springs
     )
 
 
 def _drag_coefficients(tree: Tree, drag_area: Floats, radius: Floats) -> Floats:
     """Coefficients of MuJoCo's drag of ellipsoids, (n,), for drag areas across [m^2], (n,)."""
-    along = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()[:, :, 0]
     bearing = np.linspace(0.0, np.pi, _BEARINGS, endpoint=False)
-    cosine = along[:, :2] @ np.stack([np.cos(bearing), np.sin(bearing)])
+    cosine = tree.direction[:, :2] @ np.stack([np.cos(bearing), np.sin(bearing)])
     sine_square = np.maximum(1.0 - cosine**2, 0.0)
     side = (np.pi * radius * (0.5 * tree.length + radius))[:, None]
     end = np.pi * radius[:, None] ** 2

@@ -58,7 +58,8 @@ class TreeMesh(NamedTuple):
 
     def turned(self, poses: Floats) -> Floats:
         """Return the normals of the vertices, (v, 3), in the frame of poses (n, 7)."""
-        return np.asarray(Rotation.from_quat(poses[self.segment, 3:]).apply(self.normals))
+        rotation = Rotation.from_quat(poses[self.segment, 3:])
+        return np.asarray(rotation.apply(self.normals))
 
 
 def matrices_of(poses: Floats) -> Floats:
@@ -170,7 +171,8 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
 
 def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
     """Return clusters of the same area in parts that are spread about the shoot of each."""
-    many = LeafClusters(*(np.repeat(each, shoots, axis=0) for each in vars(leaves).values()))
+    columns = vars(leaves).values()
+    many = LeafClusters(*(np.repeat(each, shoots, axis=0) for each in columns))
     number = np.tile(np.arange(shoots), len(leaves.segment))
     around = 2.4 * number + many.phase
     # The first part stays in the middle, where the shoot is.
@@ -231,4 +233,4 @@ def _cards(leaves: LeafClusters, spray: Spray, card: int, roll: float) -> Floats
 
 def _turned(rotations: Rotation, vectors: Floats) -> Floats:
     """Vectors, (4, 3) or (m, 4, 3), by each of rotations, (m, 4, 3)."""
-    return np.asarray(vectors @ rotations.as_matrix().transpose(0, 2, 1))
+    return np.asarray(vectors @ rotations.inv().as_matrix())
