@@ -83,7 +83,8 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     radius = 0.5 * np.column_stack([tree.base_diameter, tree.tip_diameter])
     rings = radius[:, :, None, None] * around
     rings[:, 1, :, 0] = tree.length[:, None]
-    slope = np.arctan2(radius[:, 0] - radius[:, 1], tree.length)[:, None, None]
+    taper = radius[:, 0] - radius[:, 1]
+    slope = np.arctan2(taper, tree.length)[:, None, None]
     outward = np.cos(slope) * around + np.sin(slope) * [1.0, 0.0, 0.0]
     end = np.cumsum(tree.length)
     start = end - tree.length
@@ -197,7 +198,8 @@ def _turns(leaves: LeafClusters) -> Rotation:
 def _means(values: Floats, number: Ints) -> Floats:
     """Mean of the values (m, k) of each number, from 0."""
     sums = [np.bincount(number, column) for column in values.T]
-    return np.stack(sums, axis=1) / np.maximum(np.bincount(number), 1)[:, None]
+    counts = np.maximum(np.bincount(number), 1)
+    return np.stack(sums, axis=1) / counts[:, None]
 
 
 def _unit(vectors: Floats) -> Floats:
@@ -228,7 +230,8 @@ def _cards(leaves: LeafClusters, spray: Spray, card: int, roll: float) -> Floats
     corner[..., 2] -= _BOW * long * u
     points = leaves.offset[:, None] + _turned(turns, corner)
     bent = np.column_stack([0.3 * u, 1.2 * v, np.ones(4)])
-    return np.stack([points, _turned(turns * around, _unit(bent))])
+    normals = _turned(turns * around, _unit(bent))
+    return np.stack([points, normals])
 
 
 def _turned(rotations: Rotation, vectors: Floats) -> Floats:

@@ -13,6 +13,7 @@ easting, northing, or latitude and longitude, in two columns or one), ``species`
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache, partial
 import math
 from pathlib import Path
 from typing import Any
@@ -72,17 +73,14 @@ def read_stand_table(
     keys = [wood[each].key if each in wood else each for each in inventory.species]
     sizes = inventory.height, inventory.diameter
     classes = own_kinds(*sizes) if exact else kind_classes(keys, *sizes)
-    grown: dict[tuple[Any, ...], GrownTree] = {}
+    grown = cache(partial(_grown_kind, seed=seed, notes=notes))
     random_yaw = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, len(keys))
     yaw = np.where(np.isnan(inventory.yaw), random_yaw, inventory.yaw)
     trees = []
     rows = zip(keys, inventory.species, *(each.tolist() for each in classes), strict=True)
     for row, (key, name, height, slenderness) in enumerate(rows):
-        own_class = key, height, slenderness
         try:
-            kind = given.get(name) or grown.get(own_class)
-            if kind is None:
-                kind = grown[own_class] = _grown_kind(wood[name], height, slenderness, seed, notes)
+            kind = given.get(name) or grown(wood[name], height, slenderness)
             trees.append(_placed(inventory, row, kind, key, float(yaw[row])))
         except TreeSwayError as error:
             raise error.at(inventory.where(row)) from None

@@ -7,11 +7,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
 from tree_sway.core.setup import is_in_leaf, standing_tree
 from tree_sway.core.species import Species, species_named
@@ -99,7 +98,7 @@ class TreeOptions:
 
     def in_metres(self, shape: _Shape) -> _Shape:
         """Return a tree, or its cylinders, in metres, z up."""
-        changed = dict[str, Floats]()
+        changed = dict[str, Any]()
         for name in ('start', 'end'):
             nodes = getattr(shape, name)
             turned = nodes[:, [0, 2, 1]] * [1.0, -1.0, 1.0] if self.up == 'y' else nodes

@@ -37,7 +37,7 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
     numbers = np.hstack([cylinders.start, cylinders.end, cylinders.diameter])
     check_numbers(numbers, cylinders.labels)
     faults = coarse_positions(cylinders.start)
-    checked_order(cylinders.parent, cylinders.labels)
+    checked_order(cylinders.parent, cylinders.labels)  # no cycles from here on
     cylinders = without_zero_length(with_joined_branches(cylinders))
     tree = tree_from_segments(
         cylinders.start, cylinders.end, cylinders.diameter, parent=cylinders.parent,

@@ -60,7 +60,9 @@ def cylinders_of_edges(point: Floats, edges: Ints, radius: Floats, *, of_nodes: 
     order, before = breadth_first_order(graph, root, directed=False)
     if not of_nodes:
         outer = np.where(before[one] == other, one, other)
-        radius = np.bincount(outer, radius, n)
+        own = np.zeros(n)
+        own[outer] = radius
+        radius = own
     parent = np.maximum(before, -1)
     labels = [f'node {number}' for number in range(n)]
     made = cylinders_of_nodes(order, point, 2.0 * radius, parent, labels, cones=of_nodes)

@@ -27,6 +27,7 @@ def without_zero_length(cylinders: Cylinders) -> Cylinders:
         return cylinders
     parent = cylinders.parent.copy()
     continues = None if cylinders.continues is None else cylinders.continues.copy()
+    # Parents of those left out are taken in their place, from round to round higher up.
     while (below := (parent >= 0) & ~keep[parent]).any():
         above = parent[below]
         parent[below] = parent[above]

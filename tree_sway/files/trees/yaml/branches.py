@@ -96,7 +96,7 @@ def _parents(branches: list[Values], where: list[str]) -> list[int]:
         elif name not in index:
             cure = nearest(name, index) or 'give a branch of this file'
             raise TreeError(f"orphan: no branch '{name}'", where=where[number], cure=cure)
-        parents.append(index.get(name, -1))
+        parents.append(-1 if name is None else index[name])
     for second in stems[1:]:
         raise TreeError(
             'a second branch without a parent',
@@ -111,12 +111,10 @@ def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
         what = 'both nodes and segments' if 'nodes' in branch else 'neither nodes nor segments'
         raise FormatError(what, where=where, cure='give one of the two')
     if 'nodes' in branch:
-        nodes = np.array(branch['nodes'], dtype=np.float64)
+        nodes = np.array(branch['nodes'])
         return nodes[:-1, :3], nodes[1:, :3], np.column_stack([nodes[:-1, 3], nodes[1:, 3]])
     links = branch['segments']
-    start, end = (
-        np.array([link[each] for link in links], dtype=np.float64) for each in ('start', 'end')
-    )
+    start, end = (np.array([link[each] for link in links]) for each in ('start', 'end'))
     return start, end, np.array([[1.0, 1.0] * np.array(link['diameter']) for link in links])
 
 
