@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
     output = output_path(arguments)
     suffix = Path(output).suffix.lower()
     if suffix not in _FORMATS:
-        names = ', '.join('.xml (MJCF)' if each == '.xml' else each for each in _FORMATS)
+        names = ', '.join(_FORMATS).replace('.xml', '.xml (MJCF)')
         what = f"cannot write '{Path(output).suffix}'" if suffix else 'a name without a suffix'
         raise FormatError(what, where=output, cure=f'use {names}')
     if arguments.at is not None and suffix != '.obj':

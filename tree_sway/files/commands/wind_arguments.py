@@ -102,14 +102,10 @@ def simulated_speed(
 
 def refuse_unused_wind(arguments: argparse.Namespace) -> None:
     """Refuse two winds of which one would be used, and options of a record without one."""
-    given = {
-        '--sensor': getattr(arguments, 'sensor', None),
-        '--wind': arguments.wind,
-        '--speed': arguments.speed,
-    }
-    winds = [name for name, value in given.items() if value is not None]
+    names = ('sensor', 'wind', 'speed')
+    winds = [name for name in names if getattr(arguments, name, None) is not None]
     if len(winds) > 1:
-        raise ParameterError(f'both {winds[0]} and {winds[1]}', cure='give one of the two')
+        raise ParameterError(f'both --{winds[0]} and --{winds[1]}', cure='give one of the two')
     if arguments.wind_option and arguments.wind is None:
         refuse_unused('--wind-option', '--wind FILE')
 

@@ -117,7 +117,7 @@ def _damaged(what: str) -> FormatError:
 
 def _tree(about: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Tree:
     """Make the tree again; refuse arrays that are no tree in depth-first order."""
-    names = tuple(str(name) for name in about['branch_names'])
+    names = tuple(map(str, about['branch_names']))
     _check_tree(arrays, names)
     tree = tree_in_order(
         **arrays,

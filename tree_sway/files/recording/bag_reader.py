@@ -107,10 +107,11 @@ def _messages_of_bag(path: str, *types: str) -> Arrays:
     """Yield topics and types, (t, 2), topic, stamp and size of each message, (n, 3), and bytes."""
     from rosbags.rosbag2 import Reader
 
-    parts = [Path(path)]
+    bag = Path(path)
+    parts = [bag]
     topics = dict[str, str]()
-    if parts[0].is_dir() and not (parts[0] / 'metadata.yaml').exists():
-        parts = sorted(each for each in parts[0].iterdir() if each.suffix in ('.db3', '.mcap'))
+    if bag.is_dir() and not (bag / 'metadata.yaml').exists():
+        parts = sorted(each for each in bag.iterdir() if each.suffix in ('.db3', '.mcap'))
         if not parts:
             raise ValueError('no metadata.yaml, no .db3 and no .mcap file in it')
     messages = array('q')

@@ -101,7 +101,7 @@ def _warn(faults: Sequence[str]) -> None:
 def unknown_tree(name: str) -> FormatError:
     """Return the error for a name that is neither that of a built-in tree nor that of a file."""
     path = Path(name)
-    beside = [str(each) for each in path.parent.glob(f'*{path.suffix}')] if path.suffix else []
+    beside = [*map(str, path.parent.glob(f'*{path.suffix}'))] if path.suffix else []
     guess = nearest(name, beside or [*BUILTIN_TREES, *species_keys()])
     if name in species_keys():
         line = f'tree-sway grow {name} --height 10 -o {name}.yaml'
