@@ -189,7 +189,7 @@ def _spread(tree: Tree, leaves: Floats | None) -> Floats:
     """Leaves of the branches, (b,), per length of each segment, (n,)."""
     if leaves is None:
         return np.zeros(tree.n_segments)
-    return np.asarray((leaves / tree.branch_length)[tree.branch_of_segment])
+    return (leaves / tree.branch_length)[tree.branch_of_segment]
 
 
 def _drag_area(simulator: SwaySimulator) -> Floats:
@@ -289,7 +289,7 @@ class _Hinges:
 
     def numbers(self, segment: Ints) -> Ints:
         """Return the numbers of the hinges of segments, (p, k)."""
-        return np.asarray(self.n_axes * segment[:, None] + np.arange(self.n_axes))
+        return self.n_axes * segment[:, None] + np.arange(self.n_axes)
 
     def mass_matrix(self) -> sparse.csc_matrix:
         """

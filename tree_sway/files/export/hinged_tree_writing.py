@@ -52,7 +52,7 @@ diaginertia="{_text(hinged.inertia[i, [0, 1, 1]])}"/>
 <geom fromto="0 0 0 {_text(tree.length[i])} 0 0" size="{_text(radius[i])}"
 fluidcoef="{_text(drag[i])} 0 0 0 0"/>"""
         text = '\n'.join([body, *reversed(inside[i]), '</body>'])
-        inside[int(tree.segment_parent[i])].append(text)
+        inside[tree.segment_parent[i]].append(text)
     # Geometries collide where a bit of one is in the other's mask: segments have none.
     bodies = '\n'.join(inside[-1])
     step = min(_USUAL_STEP, hinged.largest_step)
@@ -107,7 +107,7 @@ def _radii(tree: Tree) -> Floats:
 def _link(tree: Tree, hinged: HingedTree, i: int, radius: float) -> str:
     """Return a segment as SDF, and the joint that it hangs on."""
     name = hinged.names[i]
-    parent = int(tree.segment_parent[i])
+    parent = tree.segment_parent[i]
     carrier = hinged.names[parent] if parent >= 0 else ''
     stiffness = hinged.stiffness[i, 0]
     place = _text(hinged.poses[i])
@@ -155,7 +155,7 @@ def _drag_coefficients(tree: Tree, drag_area: Floats, radius: Floats) -> Floats:
     numerator = side**4 * sine_square + end**4 * cosine**2
     projected = np.sqrt(numerator / (side**2 * sine_square + end**2 * cosine**2))
     ours = 0.5 * drag_area * np.mean(sine_square**1.5, axis=1)
-    return np.asarray(ours / np.mean(projected, axis=1))
+    return ours / np.mean(projected, axis=1)
 
 
 def _text(values: Floats | float) -> str:

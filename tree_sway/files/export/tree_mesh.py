@@ -59,7 +59,7 @@ class TreeMesh(NamedTuple):
     def turned(self, poses: Floats) -> Floats:
         """Return the normals of the vertices, (v, 3), in the frame of poses (n, 7)."""
         rotation = Rotation.from_quat(poses[self.segment, 3:])
-        return np.asarray(rotation.apply(self.normals))
+        return rotation.apply(self.normals)
 
 
 def matrices_of(poses: Floats) -> Floats:
@@ -205,7 +205,7 @@ def _means(values: Floats, number: Ints) -> Floats:
 def _unit(vectors: Floats) -> Floats:
     """Vectors of length 1, (..., 3)."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(length, 1e-9))
+    return vectors / np.maximum(length, 1e-9)
 
 
 def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
@@ -236,4 +236,4 @@ def _cards(leaves: LeafClusters, spray: Spray, card: int, roll: float) -> Floats
 
 def _turned(rotations: Rotation, vectors: Floats) -> Floats:
     """Vectors, (4, 3) or (m, 4, 3), by each of rotations, (m, 4, 3)."""
-    return np.asarray(vectors @ rotations.inv().as_matrix())
+    return vectors @ rotations.inv().as_matrix()

@@ -134,7 +134,7 @@ def influences(simulator: SwaySimulator) -> Floats:
     slope = np.where(carrier < 0, turned[last].magnitude(), own.magnitude())
     groups = branch_groups(tree)[first]
     mean = np.sqrt(np.bincount(groups, slope**2) / np.bincount(groups))
-    return np.asarray(mean / mean.max())
+    return mean / mean.max()
 
 
 def _wind_attributes(simulator: SwaySimulator) -> str:

@@ -39,9 +39,9 @@ def with_joined_branches(cylinders: Cylinders) -> Cylinders:
     root_of = roots_of(cylinders.parent)
     length = np.linalg.norm(cylinders.end - cylinders.start, axis=1)
     volume = np.bincount(root_of, weights=length * cylinders.diameter.mean(axis=1) ** 2)
-    stem = int(roots[np.argmax(volume[roots])])
+    stem = roots[np.argmax(volume[roots])]
     loose = roots[roots != stem]
-    largest = int(loose[np.argmax(volume[loose])])
+    largest = loose[np.argmax(volume[loose])]
     if len(loose) > _MAX_LOOSE or volume[largest] > _MAX_LOOSE_VOLUME * volume[stem]:
         raise TreeError(
             f'{len(roots)} roots: a forest of trees that are not connected',
