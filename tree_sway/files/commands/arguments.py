@@ -36,12 +36,13 @@ def add_tree_arguments(
     parser: argparse.ArgumentParser, *, forests: bool = False, default: str | None = None
 ) -> None:
     """Add TREE, or a forest, and its wood; TREE is required unless there is a default."""
-    kind = _TREE + ', forest or inventory' * forests
-    number = None
-    if default is not None:
-        kind, number = f'{kind} (%(default)s)', '?'
     parser.add_argument(
-        'tree', type=tree_name, metavar='TREE', nargs=number, default=default, help=kind
+        'tree',
+        type=tree_name,
+        metavar='TREE',
+        nargs='?' if default else None,
+        default=default,
+        help=_TREE + ', forest or inventory' * forests + ' (%(default)s)' * bool(default),
     )
     add = parser.add_argument_group('tree').add_argument
     add('--seed', type=int, default=0, help='random seed of a built-in tree (%(default)s)')
@@ -94,6 +95,8 @@ def opened_scene(arguments: argparse.Namespace, *, says: bool = True) -> Scene:
 
 def _opened(opener: Callable[..., T], arguments: argparse.Namespace, **more: bool) -> T:
     wood = _wood_of(arguments)
+    with inside('--option'):
+        options = reader_options(arguments.option)
     with waiting(f'opening {arguments.tree}'):
         return opener(
             arguments.tree,
@@ -102,7 +105,7 @@ def _opened(opener: Callable[..., T], arguments: argparse.Namespace, **more: boo
             in_leaf=chosen_leaves(arguments),
             warn=False,
             **more,
-            **_options(arguments),
+            **options,
         )
 
 
@@ -113,23 +116,16 @@ def say_warnings(warnings: Iterable[str]) -> None:
 
 
 def _wood_of(arguments: argparse.Namespace) -> Wood:
-    """Return the species of the arguments for that of a file."""
-    given = _species(arguments)
-    changed = _wood(arguments)
-    if given is None and not changed:
-        return same
-    return lambda found: dataclasses.replace(given or found, **changed)
-
-
-def _species(arguments: argparse.Namespace) -> Species | None:
-    """Species of ``--species``, of the table or of a file; None without the option."""
+    """Return the species of the arguments, of the table or of a file, for that of a tree."""
     name = arguments.species
+    changed = _wood(arguments)
     if name is None:
-        return None
+        return (lambda found: dataclasses.replace(found, **changed)) if changed else same
     try:
-        return read_species(name) if is_species_file(name) else species_named(name)
+        given = read_species(name) if is_species_file(name) else species_named(name)
     except SpeciesError as error:
         raise error.inside('--species') from None
+    return lambda _: dataclasses.replace(given, **changed)
 
 
 def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -144,11 +140,6 @@ def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
                 cure='give an SI value',
             )
     return changed
-
-
-def _options(arguments: argparse.Namespace) -> dict[str, Any]:
-    with inside('--option'):
-        return reader_options(arguments.option)
 
 
 def add_exact_argument(parser: argparse.ArgumentParser) -> None:

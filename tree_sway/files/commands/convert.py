@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tree_sway.commands import counting, refuse_unused, say, waiting
 from tree_sway.core.run import SwaySimulator
-from tree_sway.core.scene import make_simulator, Scene, solved
+from tree_sway.core.scene import make_simulator, Scene, Simulator, solved
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import prepare
 from tree_sway.errors import FormatError, ParameterError
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
     output = output_path(arguments)
     suffix = Path(output).suffix.lower()
     if suffix not in _FORMATS:
-        names = ', '.join('.xml (MJCF)' if each == '.xml' else each for each in _FORMATS)
+        names = ', '.join(_FORMATS).replace('.xml', '.xml (MJCF)')
         what = f"cannot write '{Path(output).suffix}'" if suffix else 'a name without a suffix'
         raise FormatError(what, where=output, cure=f'use {names}')
     if arguments.at is not None and suffix != '.obj':
@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.leaves = 'on' if suffix in _DRAWN else 'auto'
     moments = [] if arguments.at is None else moments_of(arguments.at)
     count = max(1, len(moments))
-    paths = numbered_paths(output, count, may_overwrite=suffix != '.obj' or arguments.force)
+    paths = numbered_paths(output, count, may_overwrite=arguments.force)
     scene = opened_scene(arguments)
     # A single tree has a breeze and weights in a .glb, unless a skin is asked for.
     way = arguments.sway or ('morph' if scene.is_one_tree else 'skin')
@@ -107,7 +107,10 @@ def run(arguments: argparse.Namespace) -> int:
     if suffix == '.obj':
         _write_moments(scene, arguments, moments, paths)
     elif suffix == '.html':
-        _write_page(scene, arguments)
+        from tree_sway.page import page_of_scene
+
+        simulator = _simulator(scene, arguments, 'finding what sways')
+        write_text_whole(output, page_of_scene(simulator))
     elif sways or suffix in (*_HINGED, *_PREPARED):
         _write_swaying(scene, arguments, suffix)
     elif suffix != '.glb' and scene.is_one_tree:
@@ -146,24 +149,18 @@ def _write_moments(
         write_text_whole(paths[0], files.text(scene.tree.rest_poses, f'{name} at rest; {axes}'))
         return
     wind = opened_wind(arguments)
-    with counting(len(scene.kinds), 'setting up the trees') as done:
-        simulator = scene.simulator(
-            in_leaf=chosen_leaves(arguments), model=arguments.model, progress=done
-        )
+    simulator = _simulator(scene, arguments, 'setting up the trees')
     for number, time in at_moments(simulator, wind, moments):
         comment = f'{name} at {time:.4f} s; {axes}'
         write_text_whole(paths[number], files.text(simulator.place(), comment))
 
 
-def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
-    """Write a page that sways by itself."""
-    from tree_sway.page import page_of_scene
-
-    settings = Settings(in_leaf=chosen_leaves(arguments))
-    with counting(len(scene.kinds), 'finding what sways') as done:
-        simulator = scene.simulator(settings, model=arguments.model, progress=done)
-        page = page_of_scene(simulator)
-    write_text_whole(arguments.output, page)
+def _simulator(scene: Scene, arguments: argparse.Namespace, what: str) -> Simulator:
+    """Set up all trees of a scene, with the progress of it under a label."""
+    with counting(len(scene.kinds), what) as done:
+        return scene.simulator(
+            in_leaf=chosen_leaves(arguments), model=arguments.model, progress=done
+        )
 
 
 def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> None:
@@ -186,9 +183,8 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
         leaves = drawn_leaves(scene, arguments)
         if suffix == '.glb':
             small = arguments.sway != 'floats'
-            write_gltf(
-                arguments.output, morphing_tree(simulator, leaves, small=small, speed=speed)
-            )
+            document = morphing_tree(simulator, leaves, small=small, speed=speed)
+            write_gltf(arguments.output, document)
         elif suffix in _USD:
             write_usd(arguments.output, simulator, leaves, speed)
         else:

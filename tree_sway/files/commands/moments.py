@@ -14,6 +14,7 @@ from tree_sway.core.checks import within
 from tree_sway.core.scene import Run, Simulator
 from tree_sway.core.wind import FASTEST_WIND, WindGate, WindIntake
 from tree_sway.errors import ParameterError
+from tree_sway.files.text_file import finite
 from tree_sway.simulation import blow, WindSource
 
 _STEPS_PER_SECOND = 60.0
@@ -28,12 +29,8 @@ def moments_of(text: str) -> list[float]:
 
     Raises a `ParameterError` for anything else.
     """
-    parts = text.split(':')
-    try:
-        numbers = [float(part) for part in parts]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in (1, 3) or not all(map(math.isfinite, numbers)):
+    numbers = [*map(finite, text.split(':'))]
+    if len(numbers) not in (1, 3) or None in numbers:
         raise ParameterError(
             f"'{text}' names no moments",
             where='--at',
@@ -71,10 +68,9 @@ def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Pat
             where=pattern,
             cure='name files with a number in their names, such as scene_%03d.obj',
         )
-    for name in names:
-        if not may_overwrite:
-            refuse_overwriting(name, '--output')
-    return [Path(name) for name in names]
+    for name in () if may_overwrite else names:
+        refuse_overwriting(name, '--output')
+    return [*map(Path, names)]
 
 
 def at_moments(
@@ -100,8 +96,8 @@ def at_moments(
     steps = max(1, math.ceil(_STEPS_PER_SECOND * every - 1e-9))
     run = Run(simulator, steps / every, intake=WindIntake(gate=WindGate(max_speed=FASTEST_WIND)))
     tick = 0
-    for number in bar(range(len(moments)), what):
-        until = round(moments[number] * steps / every)
+    for number, moment in enumerate(bar(moments, what)):
+        until = round(moment * steps / every)
         while tick < until:
             tick += 1
             blow(run, wind, tick * run.period)

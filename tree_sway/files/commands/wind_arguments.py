@@ -102,14 +102,10 @@ def simulated_speed(
 
 def refuse_unused_wind(arguments: argparse.Namespace) -> None:
     """Refuse two winds of which one would be used, and options of a record without one."""
-    given = {
-        '--sensor': getattr(arguments, 'sensor', None),
-        '--wind': arguments.wind,
-        '--speed': arguments.speed,
-    }
-    winds = [name for name, value in given.items() if value is not None]
+    names = ('sensor', 'wind', 'speed')
+    winds = [name for name in names if getattr(arguments, name, None) is not None]
     if len(winds) > 1:
-        raise ParameterError(f'both {winds[0]} and {winds[1]}', cure='give one of the two')
+        raise ParameterError(f'both --{winds[0]} and --{winds[1]}', cure='give one of the two')
     if arguments.wind_option and arguments.wind is None:
         refuse_unused('--wind-option', '--wind FILE')
 
@@ -126,12 +122,12 @@ def opened_record(arguments: argparse.Namespace) -> WindRecord:
 
 def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
     """Open the record of the arguments, repeated, or simulated wind of their speed."""
-    if arguments.wind is not None:
-        record = opened_record(arguments)
-        if short := shorter_than(record.duration, getattr(arguments, 'seconds', None)):
-            say(short)
-        return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
-    return SimulatedWind(simulated_speed(arguments))
+    if arguments.wind is None:
+        return SimulatedWind(simulated_speed(arguments))
+    record = opened_record(arguments)
+    if short := shorter_than(record.duration, getattr(arguments, 'seconds', None)):
+        say(short)
+    return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
 
 
 def add_sway_arguments(

@@ -60,25 +60,15 @@ class GltfDocument:
         shares are stored as integers.
         """
         columns = array.reshape(len(array), -1)
-        rows = columns
-        stride = columns.itemsize * columns.shape[1]
-        if target == ARRAY_BUFFER and stride % 4:  # vertices begin at multiples of 4 bytes
-            missing = -stride % 4 // columns.itemsize
-            rows = np.pad(columns, ((0, 0), (0, missing)))
-        view = self.add(
-            'bufferViews',
-            buffer=0,
-            byteOffset=len(self._bytes),
-            byteLength=rows.nbytes,
-            byteStride=rows.strides[0] if rows is not columns else None,
-            target=target,
-        )
-        stored = np.ascontiguousarray(rows).astype(rows.dtype.newbyteorder('<'))
-        self._bytes += stored.tobytes()
-        self._bytes += b'\0' * (-len(self._bytes) % 4)
+        rows = columns.astype(columns.dtype.newbyteorder('<'), order='C')
+        stride = None
+        if target == ARRAY_BUFFER and rows.strides[0] % 4:  # vertices begin at multiples of 4
+            missing = -rows.strides[0] % 4 // rows.itemsize
+            rows = np.pad(rows, ((0, 0), (0, missing)))
+            stride = rows.strides[0]
         return self.add(
             'accessors',
-            bufferView=view,
+            bufferView=self._add_bytes(rows.tobytes(), byteStride=stride, target=target),
             componentType=_COMPONENTS[array.dtype.name],
             normalized=is_share or None,
             count=len(array),
@@ -89,10 +79,17 @@ class GltfDocument:
 
     def add_picture(self, name: str, png: bytes) -> int:
         """Add a PNG that goes on beyond its edges as a texture and return its number."""
-        view = self.add('bufferViews', buffer=0, byteOffset=len(self._bytes), byteLength=len(png))
-        self._bytes += png + b'\0' * (-len(png) % 4)
+        view = self._add_bytes(png)
         image = self.add('images', name=name, mimeType='image/png', bufferView=view)
         return self.add('textures', source=image, sampler=0)
+
+    def _add_bytes(self, data: bytes, **properties: int | None) -> int:
+        """Add a view of bytes, filled up to a multiple of 4, and return its number."""
+        begin = len(self._bytes)
+        self._bytes += data + b'\0' * (-len(data) % 4)
+        return self.add(
+            'bufferViews', buffer=0, byteOffset=begin, byteLength=len(data), **properties
+        )
 
     def glb(self) -> bytes:
         """Return the document in the binary form."""

@@ -12,15 +12,15 @@ the node of the tree has the rotation, and everything inside it is in our frame.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves import LeafClusters
-from tree_sway.core.model import MARGIN, StateBasis
+from tree_sway.core.model import MARGIN
 from tree_sway.core.run import basis_of, SwaySimulator
 from tree_sway.core.tree import Tree
 from tree_sway.errors import FormatError
@@ -64,12 +64,14 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
         )
     document = GltfDocument()
     poses = tree.rest_poses
-    joints = list(range(1, tree.n_segments + 1))
+    joints = [*range(1, tree.n_segments + 1)]
     root = document.add('nodes', name=tree.name, rotation=_Y_UP, children=joints)
     for name, pose in zip(tree.segment_names, poses.tolist(), strict=True):
         document.add('nodes', name=name, translation=pose[:3], rotation=pose[3:])
-    inverse = document.add_array(_inverse_matrices(poses))
-    skin = document.add('skins', joints=joints, skeleton=root, inverseBindMatrices=inverse)
+    back = Rotation.from_quat(poses[:, 3:]).inv()
+    inverse = matrices_of(np.hstack([-back.apply(poses[:, :3]), back.as_quat()]))
+    matrices = document.add_array(inverse.astype(np.float32))
+    skin = document.add('skins', joints=joints, skeleton=root, inverseBindMatrices=matrices)
     primitives = []
     for part in parts_of(tree, leaves, _SHOOTS):
         mesh = part.mesh
@@ -112,22 +114,24 @@ def morphing_tree(
     document = GltfDocument()
     rest = tree.rest_poses
     parts = parts_of(tree, leaves, _FEW_SHOOTS)
-    steps = [_swung(simulator, basis, k, storm[k]) for k in range(basis.n_coordinates)]
-    changes = [[_change(part, step) for step in steps] for part in parts]
+    swings = _SWING * np.diag(storm)
+    steps = [
+        [simulator.place_rotations(basis.rotations(each)).copy() for each in (swing, -swing)]
+        for swing in swings
+    ]
+    changes = [[_change(part, *step) for step in steps] for part in parts]
     places = [part.mesh.placed(rest) for part in parts]
     low, high = (limit(np.vstack(places), axis=0) for limit in (np.min, np.max))
     size = _MOVED * float((high - low)[:2].min())
     middle = 0.5 * (low + high)
     greatest = np.max([[np.abs(change).max() for change in each] for each in changes], axis=0)
     unit = storm * size / greatest
-    names = [f'sway {k + 1}' for k in range(basis.n_coordinates)]
-    add = _add_shares if small else _add_floats
     primitives = []
     for part, points, moved in zip(parts, places, changes, strict=True):
         scaled = (points - middle) / size
-        primitive = _primitive(document, part, scaled, part.mesh.turned(rest), add)
+        primitive = _primitive(document, part, scaled, part.mesh.turned(rest), small)
         primitive['targets'] = [
-            {'POSITION': add(document, change / most, bounds=True)}
+            {'POSITION': _add_vertices(document, change / most, small, bounds=True)}
             for change, most in zip(moved, greatest, strict=True)
         ]
         primitives.append(primitive)
@@ -135,9 +139,9 @@ def morphing_tree(
         'meshes',
         name=tree.name,
         primitives=primitives,
-        weights=[0.0] * len(names),
+        weights=[0.0] * len(storm),
         extras={
-            'targetNames': names,
+            'targetNames': [f'sway {k + 1}' for k in range(len(storm))],
             'unit': unit.tolist(),
             'storm': storm.tolist(),
             'basis': basis.digest,
@@ -161,15 +165,14 @@ def morphing_tree(
     return document
 
 
-def _add_floats(document: GltfDocument, values: Floats, **options: bool) -> int:
-    """Add values of vertices in single precision."""
-    return document.add_array(values.astype(np.float32), target=ARRAY_BUFFER, **options)
-
-
-def _add_shares(document: GltfDocument, values: Floats, **options: bool) -> int:
-    """Add values of vertices, within -1 .. 1, as whole numbers of a byte."""
-    whole = np.rint(np.clip(values, -1.0, 1.0) * 127).astype(np.int8)
-    return document.add_array(whole, target=ARRAY_BUFFER, is_share=True, **options)
+def _add_vertices(
+    document: GltfDocument, values: Floats, small: bool = False, *, bounds: bool = False
+) -> int:
+    """Add values in single precision, or those within -1 .. 1 in small numbers of a byte."""
+    stored: NDArray[Any] = values.astype(np.float32)
+    if small:
+        stored = np.rint(np.clip(values, -1.0, 1.0) * 127).astype(np.int8)
+    return document.add_array(stored, target=ARRAY_BUFFER, bounds=bounds, is_share=small)
 
 
 def _primitive(
@@ -177,9 +180,9 @@ def _primitive(
     part: TreePart,
     points: Floats,
     normals: Floats,
-    add: Callable[[GltfDocument, Floats], int] = _add_floats,
+    small: bool = False,
 ) -> dict[str, Any]:
-    """Part of a mesh at its places, with normals of a kind of numbers, texture and material."""
+    """Part of a mesh at its places, with normals, small ones or not, texture and material."""
     triangles = part.mesh.triangles
     if not part.is_wood:
         # From both sides: viewers turn the normals of a back, which is dark then.
@@ -187,9 +190,9 @@ def _primitive(
     kind = np.uint16 if len(points) < 65535 else np.uint32  # 65535 starts a new strip
     return {
         'attributes': {
-            'POSITION': _add_floats(document, points, bounds=True),
-            'NORMAL': add(document, normals),
-            'TEXCOORD_0': _add_floats(document, part.mesh.texture),
+            'POSITION': _add_vertices(document, points, bounds=True),
+            'NORMAL': _add_vertices(document, normals, small),
+            'TEXCOORD_0': _add_vertices(document, part.mesh.texture),
         },
         'indices': document.add_array(triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER),
         'material': document.add(
@@ -207,32 +210,12 @@ def _primitive(
     }
 
 
-def _inverse_matrices(poses: Floats) -> Any:
-    """Inverse of each pose as a matrix by columns, (n, 4, 4)."""
-    back = Rotation.from_quat(poses[:, 3:]).inv()
-    inverse = np.hstack([-back.apply(poses[:, :3]), back.as_quat()])
-    return matrices_of(inverse).astype(np.float32)
-
-
-def _swung(
-    simulator: SwaySimulator, basis: StateBasis, k: int, size: float
-) -> tuple[Floats, Floats]:
-    """Poses with one coordinate at plus and at minus a share of its unit."""
-    coordinates = np.zeros(basis.n_coordinates)
-    coordinates[k] = _SWING * size
-    there, back = (
-        simulator.place_rotations(basis.rotations(each)).copy()
-        for each in (coordinates, -coordinates)
-    )
-    return there, back
-
-
-def _change(part: TreePart, step: tuple[Floats, Floats]) -> Floats:
-    """Return the motion of vertices per unit of a coordinate, by a central difference."""
+def _change(part: TreePart, there: Floats, back: Floats) -> Floats:
+    """Motion of vertices per unit of a coordinate, from poses at plus and minus `_SWING` of it."""
     mesh = part.mesh
     if part.is_wood:  # a ring moves with its centre, so that rounding keeps its shape
         mesh = mesh._replace(points=mesh.points * [1.0, 0.0, 0.0])
-    return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
+    return (0.5 / _SWING) * (mesh.placed(there) - mesh.placed(back))
 
 
 def _add_animation(document: GltfDocument, node: int, weights: Floats) -> None:

@@ -117,14 +117,12 @@ def hinged_tree(simulator: SwaySimulator, *, has_twist_and_weight: bool = True) 
     species = simulator.models[0].species
     bodies = _bodies(tree, species.density, _spread(tree, settings.leaf_mass))
     n_axes = 3 if has_twist_and_weight else 2
-    hinges = _Hinges.of(tree, bodies, n_axes)
+    hinges = _Hinges(tree, bodies, n_axes)
     root_stiffness = settings.root_stiffness or species.root_stiffness
     springs = _springs(tree, species, root_stiffness)[:, :n_axes]
     mass_matrix = hinges.mass_matrix()
-    moment = np.zeros(springs.shape)
-    weight_stiffness = sparse.csc_matrix(mass_matrix.shape)
-    if has_twist_and_weight:
-        moment, weight_stiffness = hinges.weight()
+    gravity = _GRAVITY if has_twist_and_weight else 0.0
+    moment, weight_stiffness = hinges.weight(gravity)
     circular_frequency = 2.0 * math.pi * float(simulator.frequencies(1)[0])
     stiffness = sparse.diags(springs.ravel()).tocsc()
     factor, share = _factor_on_springs(
@@ -191,7 +189,7 @@ def _spread(tree: Tree, leaves: Floats | None) -> Floats:
     """Leaves of the branches, (b,), per length of each segment, (n,)."""
     if leaves is None:
         return np.zeros(tree.n_segments)
-    return np.asarray((leaves / tree.branch_length)[tree.branch_of_segment])
+    return (leaves / tree.branch_length)[tree.branch_of_segment]
 
 
 def _drag_area(simulator: SwaySimulator) -> Floats:
@@ -206,55 +204,40 @@ def _drag_area(simulator: SwaySimulator) -> Floats:
     return 2.0 / AIR_DENSITY * drag * area
 
 
-class _Points(NamedTuple):
+def _points(tree: Tree) -> tuple[Floats, Floats, Floats]:
     """
-    Points of integration on both halves of the segments, (n, 2 `_N_POINTS`).
+    Return points of integration on both halves of the segments, (n, 2 `_N_POINTS`).
 
-    ``share``: place along the segment as a share of its length; ``part``: length that the point
-    stands for [m]; ``diameter`` [m].
+    Place along the segment as a share of its length, the same on all; length that the point
+    stands for [m]; diameter there [m].
     """
-
-    share: Floats
-    part: Floats
-    diameter: Floats
-
-
-def _points(tree: Tree) -> _Points:
-    """Return the points of a tree."""
     point, weight = np.polynomial.legendre.leggauss(_N_POINTS)
     share = np.concatenate([0.25 + 0.25 * point, 0.75 + 0.25 * point])
-    length, base, tip = (
-        each[:, None] for each in (tree.length, tree.base_diameter, tree.tip_diameter)
-    )
-    part = length * 0.25 * np.tile(weight, 2)
-    return _Points(share, part, base + (tip - base) * share)
+    part = 0.25 * np.outer(tree.length, np.tile(weight, 2))
+    base = tree.base_diameter[:, None]
+    return share, part, base + np.outer(tree.tip_diameter - tree.base_diameter, share)
 
 
 def _springs(tree: Tree, wood: Species, root_stiffness: float) -> Floats:
     """Stiffness of the hinges [N m/rad], (n, 3): two of bending, and one of twist."""
-    compliance = _compliance(tree, wood.modulus)
+    share, part, diameter = _points(tree)
+    bend = part / (wood.modulus * round_section(diameter))
+    parent = tree.segment_parent
+    branch = tree.branch_of_segment
+    # The moment is constant in a segment with children, and that of a uniform load in the last.
+    to_end = 1.0 - share
+    has_children = np.isin(np.arange(tree.n_segments), parent)[:, None]
+    moment = np.where(has_children, 1.0, to_end**2)
+    compliance = (to_end * moment * bend).sum(axis=1)
+    at_end = (share * bend).sum(axis=1)
+    is_last_of_branch = np.isin(parent, tree.branch_first[1:] - 1)
+    continues = (branch == branch[parent]) | is_last_of_branch
+    compliance += np.where(continues & (parent >= 0), at_end[parent], 0.0)
     # A round section has twice the second moment for twist that it has for bending.
     twist = 2.0 * wood.shear_ratio / compliance
     compliance[0] += 1.0 / root_stiffness
     bending = 1.0 / compliance
     return np.column_stack([bending, bending, twist])
-
-
-def _compliance(tree: Tree, modulus: float) -> Floats:
-    """Rotation of each hinge per moment [rad/N/m], (n,)."""
-    points = _points(tree)
-    bend = points.part / (modulus * round_section(points.diameter))
-    parent = tree.segment_parent
-    branch = tree.branch_of_segment
-    # The moment is constant in a segment with children, and that of a uniform load in the last.
-    to_end = 1.0 - points.share
-    has_children = np.isin(np.arange(tree.n_segments), parent)[:, None]
-    moment = np.where(has_children, 1.0, to_end**2)
-    at_start = (to_end * moment * bend).sum(axis=1)
-    at_end = (points.share * bend).sum(axis=1)
-    is_last_of_branch = np.isin(parent, tree.branch_first[1:] - 1)
-    continues = (branch == branch[parent]) | is_last_of_branch
-    return at_start + np.where(continues & (parent >= 0), at_end[parent], 0.0)
 
 
 class _Bodies(NamedTuple):
@@ -267,22 +250,22 @@ class _Bodies(NamedTuple):
 
 def _bodies(tree: Tree, density: float, leaf_line: Floats) -> _Bodies:
     """Bodies of the segments with leaves of a mass per length [kg/m], (n,)."""
-    points = _points(tree)
-    along = tree.length[:, None] * points.share
-    wood = density * np.pi / 4.0 * points.diameter**2 * points.part
-    total = wood + leaf_line[:, None] * points.part
+    share, part, diameter = _points(tree)
+    along = np.outer(tree.length, share)
+    wood = density * np.pi / 4.0 * diameter**2 * part
+    total = wood + leaf_line[:, None] * part
     mass = total.sum(axis=1)
     centre = (total * along).sum(axis=1) / mass
-    disc = (wood * points.diameter**2).sum(axis=1) / 16.0
+    disc = (wood * diameter**2).sum(axis=1) / 16.0
     about_start = (total * along**2).sum(axis=1)
     across = about_start - mass * centre**2 + disc
     inertia = np.column_stack([2.0 * disc, across])
     return _Bodies(mass, centre, inertia)
 
 
-class _Hinges(NamedTuple):
+class _Hinges:
     """
-    Axes of the hinges at rest, and which of them carry which bodies.
+    Axes of the hinges at rest about y, z and, of three, x, and which of them carry which bodies.
 
     ``frame``: axes of the segments in the columns of matrices, (n, 3, 3).
     ``axes``: unit vectors of the hinges of each segment in the order of the joints, (n, k, 3).
@@ -290,29 +273,23 @@ class _Hinges(NamedTuple):
     ``lever``: centres of the bodies from the hinges that carry them [m], (p, 3).
     """
 
-    bodies: _Bodies
-    frame: Floats
-    axes: Floats
-    hinge: Ints
-    body: Ints
-    lever: Floats
-
-    @classmethod
-    def of(cls, tree: Tree, bodies: _Bodies, n_axes: int) -> _Hinges:
-        """Return the hinges of a tree about y, z and, of three, x of its segments."""
-        frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
-        axes = frame.transpose(0, 2, 1)[:, [1, 2, 0][:n_axes]]
-        chains: list[list[int]] = []
+    def __init__(self, tree: Tree, bodies: _Bodies, n_axes: int) -> None:
+        self.bodies = bodies
+        self.n_axes = n_axes
+        self.shape = 2 * (n_axes * tree.n_segments,)
+        self.frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
+        self.axes = self.frame.transpose(0, 2, 1)[:, [1, 2, 0][:n_axes]]
+        chains: dict[int, list[int]] = {-1: []}
         for segment, parent in enumerate(tree.segment_parent.tolist()):
-            chains.append([*(chains[parent] if parent >= 0 else ()), segment])
-        hinge, body = np.array([(each, chain[-1]) for chain in chains for each in chain]).T
-        centre = tree.start + bodies.centre[:, None] * frame[:, :, 0]
-        return cls(bodies, frame, axes, hinge, body, centre[body] - tree.start[hinge])
+            chains[segment] = [*chains[parent], segment]
+        pairs = [(hinge, body) for body, chain in chains.items() for hinge in chain]
+        self.hinge, self.body = np.array(pairs).T
+        centre = tree.start + bodies.centre[:, None] * self.frame[:, :, 0]
+        self.lever = centre[self.body] - tree.start[self.hinge]
 
     def numbers(self, segment: Ints) -> Ints:
         """Return the numbers of the hinges of segments, (p, k)."""
-        n_axes = self.axes.shape[1]
-        return np.asarray(n_axes * segment[:, None] + np.arange(n_axes))
+        return self.n_axes * segment[:, None] + np.arange(self.n_axes)
 
     def mass_matrix(self) -> sparse.csc_matrix:
         """
@@ -321,21 +298,20 @@ class _Hinges(NamedTuple):
         It is J^T M J, with the Jacobian J of the bodies' motions by the rates of the hinges from
         the root to each body.
         """
-        n, n_axes, _ = self.axes.shape
-        size = n_axes * n
+        mass, _, inertia = self.bodies
         axes = self.axes[self.hinge]
         speed = np.cross(axes, self.lever[:, None])
         spin = np.einsum('kij,khi->khj', self.frame[self.body], axes)  # about the body's own axes
-        place = np.repeat(self.body, n_axes), self.numbers(self.hinge).ravel()
-        along, across = self.bodies.inertia.T
-        total = sparse.csc_matrix((size, size))
-        for axis, inertia in enumerate((along, across, across)):
-            for rate, weight in ((speed, self.bodies.mass), (spin, inertia)):
-                jacobian = sparse.csc_matrix((rate[:, :, axis].ravel(), place), (n, size))
+        place = np.repeat(self.body, self.n_axes), self.numbers(self.hinge).ravel()
+        total = sparse.csc_matrix(self.shape)
+        for axis, about_axis in enumerate(inertia.T[[0, 1, 1]]):
+            for rate, weight in ((speed, mass), (spin, about_axis)):
+                values = rate[:, :, axis].ravel()
+                jacobian = sparse.csc_matrix((values, place), (len(mass), self.shape[1]))
                 total += jacobian.T @ sparse.diags(weight) @ jacobian
         return total
 
-    def weight(self) -> tuple[Floats, sparse.csc_matrix]:
+    def weight(self, gravity: float) -> tuple[Floats, sparse.csc_matrix]:
         """
         Moments of the weight about the hinges [N m], (n, k), and its stiffness, (k n, k n).
 
@@ -343,18 +319,16 @@ class _Hinges(NamedTuple):
         g e_z (a_j x r) per angle, and that by g e_z (a_i x (a_j x r)) per angle of a hinge i below
         it.
         """
-        n, n_axes, _ = self.axes.shape
-        size = n_axes * n
-        carried = np.zeros((n, 3))
+        carried = np.zeros(self.axes[:, 0].shape)
         np.add.at(carried, self.hinge, self.bodies.mass[self.body, None] * self.lever)
         turned = np.cross(self.axes, carried[:, None])
-        lower = self.axes[self.hinge]
-        upper = turned[self.body]
-        change = np.cross(lower[:, :, None], upper[:, None])[..., 2] * _GRAVITY
+        lower = self.axes[self.hinge, :, None]
+        upper = turned[self.body, None]
+        change = np.cross(lower, upper)[..., 2] * gravity
         # Hinges of one segment turn one after another.
-        change[self.hinge == self.body] *= np.triu(np.ones((n_axes, n_axes)))
-        row = np.repeat(self.numbers(self.hinge), n_axes, axis=1).ravel()
-        column = np.tile(self.numbers(self.body), n_axes).ravel()
-        half = sparse.csc_matrix((change.ravel(), (row, column)), (size, size))
-        moment = -_GRAVITY * turned[:, :, 2]
+        change[self.hinge == self.body] *= np.tri(self.n_axes).T
+        row = np.repeat(self.numbers(self.hinge), self.n_axes, axis=1).ravel()
+        column = np.tile(self.numbers(self.body), self.n_axes).ravel()
+        half = sparse.csc_matrix((change.ravel(), (row, column)), self.shape)
+        moment = -gravity * turned[:, :, 2]
         return moment, half + half.T - sparse.diags(half.diagonal())

@@ -19,7 +19,6 @@ import re
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.drag import AIR_DENSITY
@@ -53,7 +52,7 @@ diaginertia="{_text(hinged.inertia[i, [0, 1, 1]])}"/>
 <geom fromto="0 0 0 {_text(tree.length[i])} 0 0" size="{_text(radius[i])}"
 fluidcoef="{_text(drag[i])} 0 0 0 0"/>"""
         text = '\n'.join([body, *reversed(inside[i]), '</body>'])
-        inside[int(tree.segment_parent[i])].append(text)
+        inside[tree.segment_parent[i]].append(text)
     # Geometries collide where a bit of one is in the other's mask: segments have none.
     bodies = '\n'.join(inside[-1])
     step = min(_USUAL_STEP, hinged.largest_step)
@@ -108,7 +107,7 @@ def _radii(tree: Tree) -> Floats:
 def _link(tree: Tree, hinged: HingedTree, i: int, radius: float) -> str:
     """Return a segment as SDF, and the joint that it hangs on."""
     name = hinged.names[i]
-    parent = int(tree.segment_parent[i])
+    parent = tree.segment_parent[i]
     carrier = hinged.names[parent] if parent >= 0 else ''
     stiffness = hinged.stiffness[i, 0]
     place = _text(hinged.poses[i])
@@ -137,27 +136,26 @@ def _link(tree: Tree, hinged: HingedTree, i: int, radius: float) -> str:
 
 def _joints(hinged: HingedTree, segment: int) -> str:
     """Return the joints of a segment as MJCF."""
-    pairs = zip(hinged.stiffness[segment], hinged.reference[segment], strict=True)
+    springs = zip(_AXES.items(), hinged.stiffness[segment], hinged.reference[segment], strict=True)
     return '\n'.join(
         f'<joint name="{hinged.names[segment]}_{axis}" axis="{along}" '
         f'stiffness="{_text(stiffness)}" springref="{_text(reference)}" '
         f'damping="{_text(hinged.damping_time * stiffness)}"/>'
-        for (axis, along), (stiffness, reference) in zip(_AXES.items(), pairs, strict=True)
+        for (axis, along), stiffness, reference in springs
     )
 
 
 def _drag_coefficients(tree: Tree, drag_area: Floats, radius: Floats) -> Floats:
     """Coefficients of MuJoCo's drag of ellipsoids, (n,), for drag areas across [m^2], (n,)."""
-    along = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()[:, :, 0]
     bearing = np.linspace(0.0, np.pi, _BEARINGS, endpoint=False)
-    cosine = along[:, :2] @ np.stack([np.cos(bearing), np.sin(bearing)])
+    cosine = tree.direction[:, :2] @ np.stack([np.cos(bearing), np.sin(bearing)])
     sine_square = np.maximum(1.0 - cosine**2, 0.0)
     side = (np.pi * radius * (0.5 * tree.length + radius))[:, None]
     end = np.pi * radius[:, None] ** 2
     numerator = side**4 * sine_square + end**4 * cosine**2
     projected = np.sqrt(numerator / (side**2 * sine_square + end**2 * cosine**2))
     ours = 0.5 * drag_area * np.mean(sine_square**1.5, axis=1)
-    return np.asarray(ours / np.mean(projected, axis=1))
+    return ours / np.mean(projected, axis=1)
 
 
 def _text(values: Floats | float) -> str:

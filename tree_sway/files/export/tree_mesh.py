@@ -58,15 +58,16 @@ class TreeMesh(NamedTuple):
 
     def turned(self, poses: Floats) -> Floats:
         """Return the normals of the vertices, (v, 3), in the frame of poses (n, 7)."""
-        return np.asarray(Rotation.from_quat(poses[self.segment, 3:]).apply(self.normals))
+        rotation = Rotation.from_quat(poses[self.segment, 3:])
+        return rotation.apply(self.normals)
 
 
 def matrices_of(poses: Floats) -> Floats:
     """Poses (n, 7) as matrices that rows of coordinates and 1 are multiplied by, (n, 4, 4)."""
-    matrices = np.zeros((len(poses), 4, 4))
-    matrices[:, :3, :3] = Rotation.from_quat(poses[:, 3:]).as_matrix().transpose(0, 2, 1)
+    matrices = np.tile(np.eye(4), (len(poses), 1, 1))
+    rotation = Rotation.from_quat(poses[:, 3:])
+    matrices[:, :3, :3] = rotation.inv().as_matrix()
     matrices[:, 3, :3] = poses[:, :3]
-    matrices[:, 3, 3] = 1.0
     return matrices
 
 
@@ -82,7 +83,8 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     radius = 0.5 * np.column_stack([tree.base_diameter, tree.tip_diameter])
     rings = radius[:, :, None, None] * around
     rings[:, 1, :, 0] = tree.length[:, None]
-    slope = np.arctan2(radius[:, 0] - radius[:, 1], tree.length)[:, None, None]
+    taper = radius[:, 0] - radius[:, 1]
+    slope = np.arctan2(taper, tree.length)[:, None, None]
     outward = np.cos(slope) * around + np.sin(slope) * [1.0, 0.0, 0.0]
     end = np.cumsum(tree.length)
     start = end - tree.length
@@ -102,11 +104,9 @@ def _cone() -> Ints:
     near = np.arange(SIDES)
     after = np.roll(near, -1)
     far = near + SIDES
-    far_after = after + SIDES
-    around = np.column_stack([near, after, far_after, near, far_after, far])
-    fan = np.arange(1, SIDES - 1)
-    near_end = np.column_stack([0 * fan, fan + 1, fan])
-    far_end = near_end[:, [0, 2, 1]] + SIDES
+    around = np.column_stack([near, after, after + SIDES, near, after + SIDES, far])
+    far_end = np.column_stack([0 * near, near, after])[1:-1] + SIDES
+    near_end = far_end[:, [0, 2, 1]] - SIDES
     return np.vstack([around.reshape(-1, 3), near_end, far_end])
 
 
@@ -132,11 +132,9 @@ def leaf_mesh(leaves: LeafClusters, spray: Spray, cards: int = 2) -> TreeMesh:
     They are those of the page (``static/drawing/foliage.js``), up to as many of each cluster as
     are given. Texture coordinates run along the shoot, and across from one side to the other.
     """
-    count = min(cards, len(spray.rolls))
-    parts = [_cards(leaves, spray, card) for card in range(count)]
-    points, normals = (np.concatenate(each) for each in zip(*parts, strict=True))
-    segment = np.tile(leaves.segment.astype(np.int64), count)
-    return _card_mesh(points, normals, segment)
+    parts = [_cards(leaves, spray, *card) for card in enumerate(spray.rolls[:cards])]
+    points, normals = np.concatenate(parts, axis=1)
+    return _card_mesh(points, normals, np.tile(leaves.segment, len(parts)))
 
 
 def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> TreeMesh:
@@ -148,13 +146,13 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     """
     mesh = leaf_mesh(_parted(leaves, shoots), spray)
     poses = tree.rest_poses
-    corners = mesh.placed(poses).reshape(-1, 4, 3)
+    corners, points, own = (
+        each.reshape(-1, 4, 3) for each in (mesh.placed(poses), mesh.points, mesh.normals)
+    )
     segment = mesh.segment[::4]
     is_root = tree.segment_parent < 0
-    tree_of_segment = np.cumsum(is_root) - 1  # in a forest
-    number = tree_of_segment[segment]
+    number = np.cumsum(is_root)[segment] - 1  # of its tree in a forest
     centre = corners.mean(axis=1)
-    foot = tree.start[is_root, 2]
     # Not of length 1: that would turn at once in the middle, as light and shade meet at an edge.
     away = centre - _means(centre, number)[number]
     deviation = np.sqrt(_means(away**2, number))
@@ -162,21 +160,20 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     away[:, 2] = _UPRIGHT * away[:, 2] + _SKYWARD
     rotation = Rotation.from_quat(poses[segment, 3:])
     outward = rotation.inv().apply(away)[:, None]
-    own = mesh.normals.reshape(-1, 4, 3)
-    points = mesh.points.reshape(-1, 4, 3)
     # Viewers turn the normals of a back: the front of each card is outside.
     is_back = (own * outward).sum(axis=(1, 2)) < 0.0
     points[is_back] = points[is_back, ::-1]
     own[is_back] = -own[is_back, ::-1]
     normals = _unit(_FLAT * own + outward)
     lowest = corners[..., 2].min(axis=1)
-    is_above = lowest >= foot[number]
+    is_above = lowest >= tree.start[is_root, 2][number]
     return _card_mesh(points[is_above], normals[is_above], segment[is_above])
 
 
 def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
     """Return clusters of the same area in parts that are spread about the shoot of each."""
-    many = LeafClusters(*(np.repeat(each, shoots, axis=0) for each in vars(leaves).values()))
+    columns = vars(leaves).values()
+    many = LeafClusters(*(np.repeat(each, shoots, axis=0) for each in columns))
     number = np.tile(np.arange(shoots), len(leaves.segment))
     around = 2.4 * number + many.phase
     # The first part stays in the middle, where the shoot is.
@@ -190,7 +187,7 @@ def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
         offset=many.offset + turns.apply(many.size[:, None] * aside),
         orientation=(turns * lean).as_quat()[:, [3, 0, 1, 2]],
         size=many.size / np.sqrt(shoots),
-        phase=np.asarray(around % (2.0 * np.pi), dtype=np.float64),
+        phase=around % (2.0 * np.pi),
     )
 
 
@@ -201,13 +198,14 @@ def _turns(leaves: LeafClusters) -> Rotation:
 def _means(values: Floats, number: Ints) -> Floats:
     """Mean of the values (m, k) of each number, from 0."""
     sums = [np.bincount(number, column) for column in values.T]
-    return np.stack(sums, axis=1) / np.maximum(np.bincount(number), 1)[:, None]
+    counts = np.maximum(np.bincount(number), 1)
+    return np.stack(sums, axis=1) / counts[:, None]
 
 
 def _unit(vectors: Floats) -> Floats:
     """Vectors of length 1, (..., 3)."""
-    length = np.linalg.norm(vectors, axis=-1)
-    return np.asarray(vectors / np.maximum(length, 1e-9)[..., None])
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.maximum(length, 1e-9)
 
 
 def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
@@ -217,25 +215,25 @@ def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
     return _mesh_of_copies(points, normals, of_picture, segment, both_halves)
 
 
-def _cards(leaves: LeafClusters, spray: Spray, card: int) -> tuple[Floats, Floats]:
-    """Corners and normals of one card of each cluster in the frames of segments, (m, 4, 3)."""
+def _cards(leaves: LeafClusters, spray: Spray, card: int, roll: float) -> Floats:
+    """Corners and normals of one card of each cluster in the frames of segments, (2, m, 4, 3)."""
     u, v = _CORNERS.T
-    roll = spray.rolls[card] + _ROLL * np.sin(leaves.phase)
-    yaw = _YAW * np.sin(leaves.phase + 2.1 * card)
-    around = Rotation.from_rotvec(yaw[:, None] * [0.0, 0.0, 1.0])
-    around *= Rotation.from_rotvec(roll[:, None] * [1.0, 0.0, 0.0])
+    rolls = roll + _ROLL * np.sin(leaves.phase)
+    yaws = _YAW * np.sin(leaves.phase + 2.1 * card)
+    around = Rotation.from_rotvec(np.outer(yaws, [0.0, 0.0, 1.0]))
+    around *= Rotation.from_rotvec(np.outer(rolls, [1.0, 0.0, 0.0]))
     turns = _turns(leaves)
     long = spray.length * leaves.size[:, None]
     flat = np.column_stack([u, v * spray.width, 0.0 * u])
     corner = long[..., None] * _turned(around, flat)
     corner[..., 0] -= 0.5 * leaves.size[:, None]
     corner[..., 2] -= _BOW * long * u
-    points = _turned(turns, corner)
-    points += leaves.offset[:, None]
+    points = leaves.offset[:, None] + _turned(turns, corner)
     bent = np.column_stack([0.3 * u, 1.2 * v, np.ones(4)])
-    return points, _turned(turns * around, _unit(bent))
+    normals = _turned(turns * around, _unit(bent))
+    return np.stack([points, normals])
 
 
 def _turned(rotations: Rotation, vectors: Floats) -> Floats:
     """Vectors, (4, 3) or (m, 4, 3), by each of rotations, (m, 4, 3)."""
-    return np.asarray(vectors @ rotations.as_matrix().transpose(0, 2, 1))
+    return vectors @ rotations.inv().as_matrix()

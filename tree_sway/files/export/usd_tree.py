@@ -11,7 +11,7 @@ branches in a steady wind, over that of the group that bends most.
 
 from __future__ import annotations
 
-from typing import Any
+import json
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -55,7 +55,7 @@ def usd_of_tree(
     rest = tree.rest_poses
     name = plain_name(tree.name)
     parts = parts_of(tree, leaves, _SHOOTS)
-    joints = _strings(_paths(tree))
+    joints = json.dumps(_paths(tree))
     turns = (_tuples(frame[:, [6, 3, 4, 5]], '%.4f') for frame in frames)
     samples = '\n'.join(f'{number}: {turn},' for number, turn in enumerate(turns))
     materials = '\n'.join(_material(part, pictures, name) for part in parts)
@@ -134,13 +134,13 @@ def influences(simulator: SwaySimulator) -> Floats:
     slope = np.where(carrier < 0, turned[last].magnitude(), own.magnitude())
     groups = branch_groups(tree)[first]
     mean = np.sqrt(np.bincount(groups, slope**2) / np.bincount(groups))
-    return np.asarray(mean / mean.max())
+    return mean / mean.max()
 
 
 def _wind_attributes(simulator: SwaySimulator) -> str:
     found = influences(simulator)
     return f"""\
-uniform token[] unreal:dynamicWind:jointNames = {_strings(plain_names(simulator.tree))}
+uniform token[] unreal:dynamicWind:jointNames = {json.dumps(plain_names(simulator.tree))}
 uniform int[] unreal:dynamicWind:jointSimulationGroups = {branch_groups(simulator.tree).tolist()}
 uniform float[] unreal:dynamicWind:simulationGroupInfluences = {found.round(4).tolist()}
 uniform float[] unreal:dynamicWind:simulationGroupShiftTops = {[0.0] * len(found)}
@@ -216,7 +216,3 @@ def _tuples(values: Floats, number: str = '%.5g') -> str:
     for size in values.shape[:0:-1]:
         form = f'({", ".join([form] * size)})'
     return f'[{", ".join([form] * len(values))}]' % tuple(values.ravel().tolist())
-
-
-def _strings(names: Any) -> str:
-    return f'[{", ".join(f"{chr(34)}{name}{chr(34)}" for name in names)}]'

@@ -70,9 +70,9 @@ def _layer(stem: str, text: str) -> dict[str, bytes]:
 def _packed(files: dict[str, bytes]) -> bytes:
     """Zip files without compression, each aligned by a field of padding in its header."""
     packed = io.BytesIO()
-    with zipfile.ZipFile(packed, 'w', zipfile.ZIP_STORED) as archive:
+    with zipfile.ZipFile(packed, 'w') as archive:
         for name, data in files.items():
-            entry = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+            entry = zipfile.ZipInfo(name)
             begin = packed.tell() + _HEADER + len(name.encode()) + 4
             padding = -begin % _ALIGNED
             entry.extra = struct.pack('<HH', _PADDING_ID, padding) + bytes(padding)

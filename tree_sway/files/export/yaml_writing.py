@@ -59,10 +59,9 @@ def yaml_of_tree(
         **({'learned': asdict(learned)} if learned else {}),
         'branches': [_branch(tree, branch) for branch in range(tree.n_branches)],
     }
-    text: str = yaml.dump(
-        content, Dumper=_DUMPER, sort_keys=False, default_flow_style=None, width=1000
+    return str(
+        yaml.dump(content, Dumper=_DUMPER, sort_keys=False, default_flow_style=None, width=1000)
     )
-    return text
 
 
 def _wood(species: Species) -> dict[str, float]:
@@ -90,7 +89,7 @@ def _branch(tree: Tree, branch: int) -> dict[str, Any]:
     if np.array_equal(bases[1:], tips[:-1]):
         return {**content, 'nodes': np.vstack([bases, tips[-1:]]).tolist()}
     segments = [
-        {'start': base[:3], 'end': tip[:3], 'diameter': [base[3], tip[3]]}
-        for base, tip in zip(bases.tolist(), tips.tolist(), strict=True)
+        {'start': row[:3], 'end': row[4:7], 'diameter': row[3::4]}
+        for row in np.hstack([bases, tips]).tolist()
     ]
     return {**content, 'segments': segments}

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import is_dataclass, replace
 import json
-import math
 from pathlib import Path
 from typing import Any, get_type_hints
 import zipfile
@@ -118,7 +117,7 @@ def _damaged(what: str) -> FormatError:
 
 def _tree(about: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Tree:
     """Make the tree again; refuse arrays that are no tree in depth-first order."""
-    names = tuple(str(name) for name in about['branch_names'])
+    names = tuple(map(str, about['branch_names']))
     _check_tree(arrays, names)
     tree = tree_in_order(
         **arrays,
@@ -170,15 +169,12 @@ def _made(kind: Any, values: Mapping[str, Any]) -> Any:
     for name, value in values.items():
         hint = hints[name]
         if is_dataclass(hint):
-            given[name] = _made(hint, value)
+            value = _made(hint, value)
         elif isinstance(value, list):
-            given[name] = tuple(float(each) for each in value)
-        elif value == 'inf':
-            given[name] = math.inf
-        elif hint is float and not isinstance(value, bool):
-            given[name] = float(value)
+            value = tuple(map(float, value))
+        elif value == 'inf' or (hint is float and not isinstance(value, bool)):
+            value = float(value)
         elif hint in (float, bool, str) and not isinstance(value, hint):
             raise ValueError(f'{name} is {value!r:.40}')
-        else:
-            given[name] = value
+        given[name] = value
     return kind(**given)

@@ -33,7 +33,7 @@ class BagContent(NamedTuple):
     types: dict[str, str]
     messages: dict[str, list[tuple[int, bytes]]]
 
-    def chosen(self, topic: str | None, kinds: Collection[str], what: str, form: str = '') -> str:
+    def chosen(self, topic: str | None, kinds: Collection[str], what: str, form: str) -> str:
         """
         Return the topic of some types of a name, or the only one; else a `FormatError`.
 
@@ -44,9 +44,9 @@ class BagContent(NamedTuple):
         if len(found) == 1:
             return found[0]
         problem = f"no {what} on topic '{topic}'" if topic else f'{what} on {len(known)} topics'
-        example = f', as {form}{"".join(known[:1])}' if form else ''
-        cure = f'choose a topic: {", ".join(known)}{example}'
-        if not known:
+        if known:
+            cure = f'choose a topic: {", ".join(known)}, as {form}{known[0]}'
+        else:
             there = ', '.join(f'{name} ({kind})' for name, kind in [*self.types.items()][:10])
             cure = f'there is {there or "nothing"}; {what} is one of {", ".join(kinds)}'
         raise FormatError(problem, cure=cure)
@@ -107,10 +107,11 @@ def _messages_of_bag(path: str, *types: str) -> Arrays:
     """Yield topics and types, (t, 2), topic, stamp and size of each message, (n, 3), and bytes."""
     from rosbags.rosbag2 import Reader
 
-    parts = [Path(path)]
+    bag = Path(path)
+    parts = [bag]
     topics = dict[str, str]()
-    if parts[0].is_dir() and not (parts[0] / 'metadata.yaml').exists():
-        parts = sorted(each for each in parts[0].iterdir() if each.suffix in ('.db3', '.mcap'))
+    if bag.is_dir() and not (bag / 'metadata.yaml').exists():
+        parts = sorted(each for each in bag.iterdir() if each.suffix in ('.db3', '.mcap'))
         if not parts:
             raise ValueError('no metadata.yaml, no .db3 and no .mcap file in it')
     messages = array('q')

@@ -50,23 +50,22 @@ def kind_classes(
     slender = np.zeros(len(keys))
     named = np.array(keys)
     ratio = np.nan_to_num(height / diameter)
-    for key in dict.fromkeys(keys):
-        for is_known in (True, False):
-            own = np.flatnonzero((named == key) & ((ratio > 0.0) == is_known))
-            groups = _steps(height[own], heights)
+    has_ratio = ratio > 0.0
+    for key, is_known in set(zip(keys, has_ratio.tolist(), strict=True)):
+        own = np.flatnonzero((named == key) & (has_ratio == is_known))
+        groups = _steps(height[own], heights)
+        if is_known:
+            groups = 1000 * groups + _steps(ratio[own], slendernesses)
+        for group in np.unique(groups):
+            of_one = own[groups == group]
+            sizes[of_one] = _middle(height[of_one])
             if is_known:
-                groups = 1000 * groups + _steps(ratio[own], slendernesses)
-            for group in np.unique(groups):
-                of_one = own[groups == group]
-                sizes[of_one] = _middle(height[of_one])
-                slender[of_one] = _middle(ratio[of_one]) if is_known else 0.0
+                slender[of_one] = _middle(ratio[of_one])
     return KindClasses(sizes, slender)
 
 
 def _steps(values: Floats, factor: float) -> Floats:
     """Class of each value, such that values of a class are within a factor."""
-    if len(values) == 0:
-        return values
     return np.round(np.log(values / np.median(values)) / math.log(factor))
 
 

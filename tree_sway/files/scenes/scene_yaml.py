@@ -27,7 +27,7 @@ from typing import Any
 
 from tree_sway.core.scene import PlacedTree, Scene
 from tree_sway.core.species import species_named
-from tree_sway.errors import FormatError, TreeSwayError
+from tree_sway.errors import FormatError, inside
 from tree_sway.files.paths import is_file, path_of
 from tree_sway.files.scenes.stand_table import read_stand_table
 from tree_sway.files.scenes.tree_names import refuse_same_names
@@ -37,7 +37,7 @@ from tree_sway.files.yaml_document import packaged_schema, read_yaml, YamlDocume
 
 OpenTree = Callable[..., TreeFile]
 
-_PLACE = 'x y z yaw leaf_on'.split()
+_PLACE = {'x', 'y', 'z', 'yaw', 'leaf_on'}
 
 
 def read_scene_yaml(path: Path, open_tree: OpenTree, *, exact: bool = False) -> Scene:
@@ -65,21 +65,19 @@ def parse_scene(text: str, open_tree: OpenTree, path: Path, *, exact: bool = Fal
     if ('trees' in values) == ('stand' in values):
         found = 'both trees and stand' if 'trees' in values else 'no trees and no stand'
         raise FormatError(found, where=document.where(), cure='give one of the two')
-    anemometer = values.get('anemometer')
     common = {
         'name': values.get('name', path.stem),
         'source': str(path),
-        'anemometer': None if anemometer is None else tuple(anemometer),
         'convection_ratio': values.get('convection_ratio', 1.0),
     }
+    if 'anemometer' in values:
+        common['anemometer'] = tuple(values['anemometer'])
     if 'trees' in values:
         return _scene_of_trees(document, open_tree, path.parent, common)
     kinds = {}
     for number, entry in enumerate(values.get('kinds', ())):
-        try:
+        with inside(document.where('kinds', number)):
             kinds[entry['species']] = open_tree(_beside(path.parent, entry['tree']), 0)
-        except TreeSwayError as error:
-            raise error.at(document.where('kinds', number)) from error
     table = path.parent / path_of(values['stand'])
     return read_stand_table(table, kinds, seed=values.get('seed', 0), exact=exact, **common)
 
@@ -106,15 +104,11 @@ def _scene_of_trees(
     files = []
     for number, entry in enumerate(entries):
         name = entry['name']
-        where = document.where('trees', number)
-        try:
+        with inside(f"{document.where('trees', number)}: tree '{name}'"):
             file = opened(
                 entry['tree'], entry.get('seed', 0), entry.get('species'), entry.get('leaf_on')
             )
-        except TreeSwayError as error:
-            inner = f'{error.where}: {error.what}' if error.where else error.what
-            raise type(error)(inner, where=f"{where}: tree '{name}'", cure=error.cure) from None
-        place: dict[str, Any] = {key: entry[key] for key in _PLACE if key in entry}
+        place: dict[str, Any] = {key: entry[key] for key in _PLACE & entry.keys()}
         placed = PlacedTree(name, file.tree, species=file.species, learned=file.learned, **place)
         trees.append(placed)
         files.append((name, file))

@@ -13,6 +13,7 @@ easting, northing, or latitude and longitude, in two columns or one), ``species`
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache, partial
 import math
 from pathlib import Path
 from typing import Any
@@ -72,17 +73,14 @@ def read_stand_table(
     keys = [wood[each].key if each in wood else each for each in inventory.species]
     sizes = inventory.height, inventory.diameter
     classes = own_kinds(*sizes) if exact else kind_classes(keys, *sizes)
-    grown: dict[tuple[Any, ...], GrownTree] = {}
+    grown = cache(partial(_grown_kind, seed=seed, notes=notes))
     random_yaw = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, len(keys))
     yaw = np.where(np.isnan(inventory.yaw), random_yaw, inventory.yaw)
     trees = []
     rows = zip(keys, inventory.species, *(each.tolist() for each in classes), strict=True)
     for row, (key, name, height, slenderness) in enumerate(rows):
-        own_class = key, height, slenderness
         try:
-            kind = given.get(name) or grown.get(own_class)
-            if kind is None:
-                kind = grown[own_class] = _grown_kind(wood[name], height, slenderness, seed, notes)
+            kind = given.get(name) or grown(wood[name], height, slenderness)
             trees.append(_placed(inventory, row, kind, key, float(yaw[row])))
         except TreeSwayError as error:
             raise error.at(inventory.where(row)) from None
@@ -123,19 +121,18 @@ def _grown_kind(
     """
     key = species.key
     diameter = None
-    least = height_of_stem(key, 0.0)
-    most = height_of_stem(key, math.inf)
-    if not least <= height <= most:
-        nearest_height = min(max(height, least), most)
-        notes.append(f'{key} of {height:.3g} m: scaled from one of {nearest_height:.3g} m')
-        height = nearest_height
+    possible = max(height, height_of_stem(key, 0.0))
+    possible = min(possible, height_of_stem(key, math.inf))
+    if possible != height:
+        notes.append(f'{key} of {height:.3g} m: scaled from one of {possible:.3g} m')
     if slenderness:
-        low, high = stem_range(species, height)
-        diameter = min(max(height / slenderness, low), high)
-        if not low <= height / slenderness <= high:
+        low, high = stem_range(species, possible)
+        wanted = possible / slenderness
+        diameter = min(max(wanted, low), high)
+        if diameter != wanted:
             notes.append(
-                f'{key} of {height:.3g} m with stems of {height / slenderness:.3g} m: grown with '
+                f'{key} of {possible:.3g} m with stems of {wanted:.3g} m: grown with '
                 f'{diameter:.3g} m, as others would buckle'
             )
-    tree = grow(key, height, diameter, rng=np.random.default_rng(seed))
+    tree = grow(key, possible, diameter, rng=np.random.default_rng(seed))
     return TreeFile(tree, rooted(tree, species), key)

@@ -4,13 +4,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from tree_sway.core.setup import is_in_leaf
-from tree_sway.core.tree import GrownTree, Tree
+from tree_sway.core.tree import GrownTree
+from tree_sway.core.tree_state import digest_of
 from tree_sway.errors import FormatError
 from tree_sway.files.atomic_file import refuse_unwritable, write_text_whole
 from tree_sway.files.export.yaml_writing import yaml_of_tree
@@ -82,9 +82,8 @@ class LearnedFile:
                 where=self.path,
                 cure='name another file to learn into',
             )
-        before = self.opened.learned
-        species = self.opened.species
-        species = learned.over(before).of(species, in_leaf=self._in_leaf)
+        newest = learned.over(self.opened.learned)
+        species = newest.of(self.opened.species, in_leaf=self._in_leaf)
         text = yaml_of_tree(self.opened.tree, species, learned)
         write_text_whole(self.path, text)
         self._text = text.encode()
@@ -109,7 +108,8 @@ def _text_of(path: str) -> bytes | None:
 def _learned_before(path: str, grown: GrownTree) -> TreeFile:
     """Read the file of a tree; a `FormatError` if it is of another, or was not learned."""
     found = read_yaml_tree(path_of(path)).checked()
-    if found.species.key != grown.species.key or not _are_equal(found.tree, grown.tree):
+    own = replace(grown.tree, species=grown.species.key)
+    if digest_of(found.tree) != digest_of(own):
         raise FormatError(
             f'is of another tree than {grown.tree.name}',
             where=path,
@@ -122,11 +122,3 @@ def _learned_before(path: str, grown: GrownTree) -> TreeFile:
             cure='name another file, as oak.twin.yaml',
         )
     return found
-
-
-def _are_equal(one: Tree, other: Tree) -> bool:
-    """Whether two trees have the same segments and the same names of branches."""
-    columns = ('start', 'end', 'base_diameter', 'tip_diameter', 'segment_parent')
-    return one.branch_names == other.branch_names and all(
-        np.array_equal(getattr(one, name), getattr(other, name)) for name in columns
-    )

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.file_format import UnknownFormatError
 from tree_sway.files.kinds import expected
-from tree_sway.files.paths import path_of, refuse_no_path
+from tree_sway.files.paths import path_of
 from tree_sway.files.scenes.inventory.inventory_file import lacking_columns
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
 from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table
@@ -70,7 +70,7 @@ def open_tree(
         An error of reading the file.
 
     """
-    refuse_no_path(name_or_path)
+    path = path_of(name_or_path)
     text = str(name_or_path)
     if text in BUILTIN_TREES:
         if options:
@@ -81,7 +81,6 @@ def open_tree(
         tree = builtin_tree(text, seed)
         built_in = TreeFile(tree, species_named(tree.species), text)
         return built_in.of_species(wood(built_in.species)).checked()
-    path = path_of(text)
     if not path.exists():
         raise unknown_tree(text)
     head = read_head(path) if path.is_file() else None
@@ -102,7 +101,7 @@ def _warn(faults: Sequence[str]) -> None:
 def unknown_tree(name: str) -> FormatError:
     """Return the error for a name that is neither that of a built-in tree nor that of a file."""
     path = Path(name)
-    beside = [str(each) for each in path.parent.glob(f'*{path.suffix}')] if path.suffix else []
+    beside = [*map(str, path.parent.glob(f'*{path.suffix}'))] if path.suffix else []
     guess = nearest(name, beside or [*BUILTIN_TREES, *species_keys()])
     if name in species_keys():
         line = f'tree-sway grow {name} --height 10 -o {name}.yaml'
@@ -113,21 +112,18 @@ def unknown_tree(name: str) -> FormatError:
 
 def _refuse_several_trees(path: Path, head: str) -> None:
     """Raise a `FormatError` for a forest or a stand, with how to get one of its trees."""
-    where = str(path)
+    what = 'a stand of trees' if begins_with_key(path, head, 'stand') else ''
+    cure = (
+        'make one of them, such as by tree-sway grow oak --height 12 --diameter 0.3 -o oak.yaml; '
+        'info, show, plot and convert take all of them'
+    )
+    if is_stand_table(head, path):
+        what = 'an inventory of trees'
     if begins_with_key(path, head, 'trees'):
-        with expected(path, 'scene'):
-            raise FormatError(
-                'a forest, where one tree is expected', where=where, cure='name one of its trees'
-            )
-    is_table = is_stand_table(head, path)
-    if is_table or begins_with_key(path, head, 'stand'):
-        what = 'an inventory' if is_table else 'a stand'
-        raise FormatError(
-            f'{what} of trees, where one tree is expected',
-            where=where,
-            cure='make one of them, such as by tree-sway grow oak --height 12 --diameter 0.3 -o '
-            'oak.yaml; info, show, plot and convert take all of them',
-        )
+        what, cure = 'a forest', 'name one of its trees'
+    if what:
+        with expected(path, 'scene', 'inventory'):
+            raise FormatError(f'{what}, where one tree is expected', where=str(path), cure=cure)
 
 
 def open_scene(
@@ -163,40 +159,34 @@ def open_scene(
         Errors of `open_tree` and `read_scene_yaml`.
 
     """
-    scene = _scene(name_or_path, seed, exact, {'wood': wood, 'in_leaf': in_leaf}, options)
+    path = path_of(name_or_path)
+    opened = partial(open_tree, in_leaf=in_leaf, warn=False)
+    if str(name_or_path) in BUILTIN_TREES or not path.is_file():
+        scene = scene_of_files([opened(name_or_path, seed, wood=wood, **options)])
+    else:
+        head = read_head(path)
+        stand = partial(read_stand_table, path, seed=seed, exact=exact, head=head)
+        if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
+            listed = partial(read_scene_yaml, path, opened, exact=exact)
+            scene = _forest(path, listed, wood, options)
+        elif is_stand_table(head, path):
+            scene = _forest(path, stand, wood, options)
+        else:
+            try:
+                files = read_trees(path, head=head, wood=wood, in_leaf=in_leaf, **options)
+                scene = scene_of_files([each.checked() for each in files], path.stem)
+            except UnknownFormatError:
+                lacking = lacking_columns(head)
+                if lacking is None or len(lacking) == len(INVENTORY):
+                    raise
+                scene = stand()
     if warn:
         _warn(scene.faults)
     return scene
 
 
-def _scene(
-    name_or_path: str | Path,
-    seed: int,
-    exact: bool,
-    asked: dict[str, Any],
-    options: dict[str, Any],
-) -> Scene:
-    """Open a scene without Python warnings; ``asked`` are wood and season."""
-    path = path_of(name_or_path)
-    if str(name_or_path) in BUILTIN_TREES or not path.is_file():
-        return scene_of_files([open_tree(name_or_path, seed, warn=False, **asked, **options)])
-    wood: Wood = asked['wood']
-    opened = partial(open_tree, in_leaf=asked['in_leaf'], warn=False)
-    head = read_head(path)
-    read = None
-    if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
-        read = partial(read_scene_yaml, path, opened, exact=exact)
-    elif is_stand_table(head, path):
-        read = partial(read_stand_table, path, seed=seed, exact=exact, head=head)
-    if read is None:
-        try:
-            files = [each.checked() for each in read_trees(path, head=head, **asked, **options)]
-        except UnknownFormatError:
-            lacking = lacking_columns(head)
-            if lacking is None or len(lacking) == len(INVENTORY):
-                raise
-            return read_stand_table(path, seed=seed, exact=exact, head=head)
-        return scene_of_files(files, path.stem)
+def _forest(path: Path, read: Callable[[], Scene], wood: Wood, options: dict[str, Any]) -> Scene:
+    """Read a forest or a stand, which has no options, of its own wood or of another one."""
     if options:
         raise ParameterError(
             f"option '{next(iter(options))}' for a forest",

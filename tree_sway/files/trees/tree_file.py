@@ -73,23 +73,17 @@ def read_trees(
         )
     if wanted.tree:
         files = [files[int(wanted.tree) - 1]]
-    read = [wanted.applied(each, wood, in_leaf) for each in files]
-    if same_place := _in_the_stem_of_the_first(read):
+    first, *others = read = [wanted.applied(each, wood, in_leaf) for each in files]
+    places = np.array([each.tree.start[0] + each.origin for each in read])
+    distances = np.linalg.norm(places[1:] - places[0], axis=1)
+    in_stem = np.count_nonzero(distances < 0.5 * first.tree.base_diameter[0])
+    if in_stem:
         fault = (
-            f'{same_place} more of the {len(read)} trees stand in the stem of this one: they may '
+            f'{in_stem} more of the {len(read)} trees stand in the stem of this one: they may '
             'be models of the same tree, of which tree=1 reads the first alone'
         )
-        read[0] = replace(read[0], faults=(*read[0].faults, fault))
-    return tuple(read)
-
-
-def _in_the_stem_of_the_first(files: list[TreeFile]) -> int:
-    """Count the trees whose base is within the stem of the first one."""
-    first, *others = files
-    place = first.tree.start[0] + first.origin
-    radius = 0.5 * first.tree.base_diameter[0]
-    distances = [np.linalg.norm(each.tree.start[0] + each.origin - place) for each in others]
-    return sum(distance < radius for distance in distances)
+        first = replace(first, faults=(*first.faults, fault))
+    return first, *others
 
 
 def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:  # noqa: A002, E501

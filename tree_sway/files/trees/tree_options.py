@@ -11,7 +11,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
 from tree_sway.core.setup import is_in_leaf, standing_tree
 from tree_sway.core.species import Species, species_named
@@ -22,8 +21,6 @@ from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.growth import grown_beyond, is_cut
 
-_ENDS = ('start', 'end')
-_DIAMETERS = ('diameter', 'base_diameter', 'tip_diameter')
 _Shape = TypeVar('_Shape', Tree, Cylinders)
 _RANGES = {
     'length_unit': (1e-6, 1e3), 'diameter_unit': (1e-6, 1e3),
@@ -101,15 +98,15 @@ class TreeOptions:
 
     def in_metres(self, shape: _Shape) -> _Shape:
         """Return a tree, or its cylinders, in metres, z up."""
-        changed: dict[str, Any] = {name: self._position(getattr(shape, name)) for name in _ENDS}
-        for name in _DIAMETERS:
+        changed = dict[str, Any]()
+        for name in ('start', 'end'):
+            nodes = getattr(shape, name)
+            turned = nodes[:, [0, 2, 1]] * [1.0, -1.0, 1.0] if self.up == 'y' else nodes
+            changed[name] = np.ascontiguousarray(self.length_unit * turned)
+        for name in ('diameter', 'base_diameter', 'tip_diameter'):
             if hasattr(shape, name):
                 changed[name] = self.diameter_unit * getattr(shape, name)
         return replace(shape, **changed)
-
-    def _position(self, nodes: Floats) -> Floats:
-        turned = nodes[:, [0, 2, 1]] * [1.0, -1.0, 1.0] if self.up == 'y' else nodes
-        return np.ascontiguousarray(self.length_unit * turned)
 
     def applied(
         self,
@@ -124,11 +121,10 @@ class TreeOptions:
         ``in_leaf`` is the season, by the species if None: what a limb can carry depends on both.
         """
         tree = content.tree
-        notes = list(content.notes)
+        notes = [*content.notes]
+        faults = [*content.faults]
         origin = content.origin
-        given = content.species if self.species is None else species_named(self.species)
-        species = wood(given)
-        faults = list(content.faults)
+        species = wood(content.species if self.species is None else species_named(self.species))
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter
         if twig > 0.0 and (self.twig_diameter is not None or not is_cut(tree)):
             tree = corrected_twigs(tree, twig, self.trusted_diameter)
@@ -139,10 +135,9 @@ class TreeOptions:
                 'wood taken off (twig_diameter=0 leaves it)'
             )
         if self.beyond_scan == 'grow':
-            tree, beyond = grown_beyond(
-                replace(tree, species=species.key), twig, self.trusted_diameter
-            )
-            notes.append(_why_nothing_grows(twig) if beyond is None else beyond.sentence())
+            own = replace(tree, species=species.key)
+            tree, beyond = grown_beyond(own, twig, self.trusted_diameter)
+            notes.append(beyond.sentence() if beyond else _why_nothing_grows(twig))
         if self.to_origin and tree.start[0].any():
             x, y, z = tree.start[0].tolist()
             origin = x, y, z
@@ -152,10 +147,10 @@ class TreeOptions:
             # Numbers that are no tree's are refused where the tree is checked or simulated.
             with suppress(TreeSwayError):
                 refuse_implausible(tree, species)
-                tree, thickening = standing_tree(
-                    tree, species, in_leaf=is_in_leaf(species, in_leaf)
-                )
-                faults += [] if thickening is None else [thickening.sentence(tree)]
+                season = is_in_leaf(species, in_leaf)
+                tree, thickening = standing_tree(tree, species, in_leaf=season)
+                if thickening:
+                    faults.append(thickening.sentence(tree))
         done = replace(content, tree=tree, notes=tuple(notes), faults=tuple(faults), origin=origin)
         return done if species is content.species else done.of_species(species)
 

@@ -39,11 +39,9 @@ def coarse_positions(start: Floats) -> tuple[str, ...]:
         single = start.astype(np.float32)
     is_rounded = (single == start).all(axis=0)
     spacing = np.spacing(np.abs(single).max(axis=0))
-    steps = [
-        float(np.diff(np.unique(start[:, axis])).min(initial=np.inf))
-        for axis in np.flatnonzero(is_rounded & (spacing > _COARSE))
-    ]
-    coarsest = max((step for step in steps if np.isfinite(step)), default=0.0)
+    is_coarse = is_rounded & (spacing > _COARSE)
+    steps = [np.diff(np.unique(axis)) for axis in start.T[is_coarse]]
+    coarsest = max((each.min() for each in steps if len(each)), default=0.0)
     if coarsest <= _COARSE:
         return ()
     return (

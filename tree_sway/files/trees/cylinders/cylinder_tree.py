@@ -37,11 +37,8 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
     numbers = np.hstack([cylinders.start, cylinders.end, cylinders.diameter])
     check_numbers(numbers, cylinders.labels)
     faults = coarse_positions(cylinders.start)
-    order = checked_order(cylinders.parent, cylinders.labels)
-    joined = with_joined_branches(cylinders, order)
-    if joined is not cylinders:
-        order = checked_order(joined.parent, joined.labels)
-    cylinders = without_zero_length(joined, order)
+    checked_order(cylinders.parent, cylinders.labels)  # no cycles from here on
+    cylinders = without_zero_length(with_joined_branches(cylinders))
     tree = tree_from_segments(
         cylinders.start, cylinders.end, cylinders.diameter, parent=cylinders.parent,
         branch=branch_keys(cylinders), labels=cylinders.labels, name=cylinders.name or path.stem,

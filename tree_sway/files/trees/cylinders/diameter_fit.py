@@ -35,6 +35,8 @@ def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -
         seen = np.interp(diameter, [end, trusted_diameter], [twig_diameter, trusted_diameter])
         return np.where(diameter < trusted_diameter, np.minimum(seen, diameter), diameter)
 
-    base = thinned(tree.base_diameter)
-    tip = thinned(tree.tip_diameter)
-    return replace(tree, base_diameter=base, tip_diameter=tip)
+    return replace(
+        tree,
+        base_diameter=thinned(tree.base_diameter),
+        tip_diameter=thinned(tree.tip_diameter),
+    )

@@ -19,25 +19,29 @@ _MAX_LOOSE_VOLUME = 0.2
 """Share of the stem's volume above which a loose part is a separate tree."""
 
 
-def with_joined_branches(cylinders: Cylinders, order: Ints) -> Cylinders:
+def roots_of(parents: Ints) -> Ints:
+    """Return the root that each member of trees without cycles hangs on, (n,)."""
+    root = np.where(parents < 0, np.arange(len(parents)), parents)
+    while not np.array_equal(root[root], root):
+        root = root[root]
+    return root
+
+
+def with_joined_branches(cylinders: Cylinders) -> Cylinders:
     """
     Join branches without a parent to the nearest cylinder of the stem, with a note.
 
-    A `TreeError` reports a loose part so large that it is a separate tree. The order has parents
-    first.
+    A `TreeError` reports a loose part so large that it is a separate tree.
     """
-    parent = cylinders.parent
-    roots = np.flatnonzero(parent == -1)
+    roots = np.flatnonzero(cylinders.parent == -1)
     if len(roots) <= 1:
         return cylinders
-    root_of = np.empty(len(parent), dtype=np.int64)
-    for index in order:
-        root_of[index] = index if parent[index] < 0 else root_of[parent[index]]
+    root_of = roots_of(cylinders.parent)
     length = np.linalg.norm(cylinders.end - cylinders.start, axis=1)
     volume = np.bincount(root_of, weights=length * cylinders.diameter.mean(axis=1) ** 2)
-    stem = int(roots[np.argmax(volume[roots])])
+    stem = roots[np.argmax(volume[roots])]
     loose = roots[roots != stem]
-    largest = int(loose[np.argmax(volume[loose])])
+    largest = loose[np.argmax(volume[loose])]
     if len(loose) > _MAX_LOOSE or volume[largest] > _MAX_LOOSE_VOLUME * volume[stem]:
         raise TreeError(
             f'{len(roots)} roots: a forest of trees that are not connected',
@@ -45,17 +49,14 @@ def with_joined_branches(cylinders: Cylinders, order: Ints) -> Cylinders:
             cure='give each tree its own file, or this cylinder a parent',
         )
     on_stem = np.flatnonzero(root_of == stem)
-    joined = parent.copy()
-    farthest = 0.0
-    for index in loose:
-        nearest, distance = nearest_axis(
-            cylinders.start[on_stem], cylinders.end[on_stem], cylinders.start[index]
-        )
-        joined[index] = on_stem[nearest]
-        farthest = max(farthest, distance)
+    axes = cylinders.start[on_stem], cylinders.end[on_stem]
+    found = [nearest_axis(*axes, cylinders.start[each]) for each in loose]
+    nearest, distances = zip(*found, strict=True)
+    joined = cylinders.parent.copy()
+    joined[loose] = on_stem[[*nearest]]
     note = (
         f'{len(loose)} branches had no parent and were joined to the nearest cylinder, at most '
-        f'{farthest:.3g} m away'
+        f'{max(distances):.3g} m away'
     )
     return replace(cylinders, parent=joined, notes=(*cylinders.notes, note))
 

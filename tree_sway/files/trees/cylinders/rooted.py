@@ -47,19 +47,21 @@ def cylinders_of_edges(point: Floats, edges: Ints, radius: Floats, *, of_nodes: 
             f'edge {row + 1} joins {edges[row, 0]} and {edges[row, 1]} of {n} nodes',
             cure='number the nodes from 0',
         )
-    graph = csr_array((np.ones(len(edges)), edges.T), shape=(n, n))
+    one, other = edges.T
+    graph = csr_array((np.ones(len(edges)), (one, other)), shape=(n, n))
     _, part = connected_components(graph, directed=False)
     largest = np.argmax(np.bincount(part))
     inside = np.flatnonzero(part == largest)
-    if np.count_nonzero(part[edges[:, 0]] == largest) >= len(inside):
+    if np.count_nonzero(part[one] == largest) >= len(inside):
         raise FormatError(
             'edges that close a ring, where a tree has none', cure='remove one edge of the ring'
         )
     root = inside[np.argmin(point[inside, 2])]
     order, before = breadth_first_order(graph, root, directed=False)
     if not of_nodes:
+        outer = np.where(before[one] == other, one, other)
         own = np.zeros(n)
-        own[np.where(before[edges[:, 0]] == edges[:, 1], edges[:, 0], edges[:, 1])] = radius
+        own[outer] = radius
         radius = own
     parent = np.maximum(before, -1)
     labels = [f'node {number}' for number in range(n)]

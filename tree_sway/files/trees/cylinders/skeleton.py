@@ -43,7 +43,8 @@ def cylinders_of_nodes(
     inner = parent[outer]
     number = np.full(len(parent), -1, dtype=np.int64)
     number[outer] = np.arange(len(outer))
-    base = diameter[inner] if cones else diameter[outer]
+    tip = diameter[outer]
+    base = diameter[inner] if cones else tip
     above = number[inner]
     roots = np.flatnonzero(above < 0)
     if len(roots) == 0:
@@ -52,9 +53,9 @@ def cylinders_of_nodes(
             where=labels[rows[0]],
             cure='let at least one node hang on the root',
         )
-    stem = roots[np.argmax(diameter[outer][roots])]
+    stem = roots[np.argmax(tip[roots])]
     above[roots[roots != stem]] = stem
     return Cylinders(
-        point[inner], point[outer], np.column_stack([base, diameter[outer]]), above, None,
+        point[inner], point[outer], np.column_stack([base, tip]), above, None,
         [labels[index] for index in outer],
     )  # fmt: skip

@@ -22,9 +22,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats
 from tree_sway.core.tree import first_of_each
 from tree_sway.files.column_names import folded
 from tree_sway.files.file_format import FileFormat, has_columns
@@ -68,16 +67,13 @@ def _read(path: Path) -> Trees:
         after = table.whole(column('extensionid'), names['extensionid'])
         continues = has_parent & (after[parent] == own)
     elif 'branchorder' in names:
-        continues = _of_one_order(parent, column('branchorder'), column('growthlength', 'radius'))
+        order = column('branchorder')
+        size = column('growthlength', 'radius')
+        rivals = np.flatnonzero(has_parent & (order == order[parent]))
+        largest = first_of_each(parent, rivals, -size[rivals], rivals)
+        continues = np.isin(np.arange(len(parent)), largest)
     diameter = 2.0 * np.column_stack([radius, radius])
     return (Cylinders(start, end, diameter, parent, continues, labels),)
-
-
-def _of_one_order(parent: Ints, order: Floats, size: Floats) -> NDArray[np.bool_]:
-    """Whether each cylinder is the largest of those of its parent's order upon it."""
-    rivals = np.flatnonzero((parent >= 0) & (order == order[parent]))
-    found = first_of_each(parent, rivals, -size[rivals], rivals)
-    return np.isin(np.arange(len(parent)), found)
 
 
 ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read, FITTED)

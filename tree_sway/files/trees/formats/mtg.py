@@ -16,15 +16,16 @@ goes from the vertex before, or from the base of its axis, to each vertex of the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 import re
+from typing import Any
 
 import numpy as np
 
 from tree_sway.errors import FormatError, TreeError
 from tree_sway.files.file_format import contains, FileFormat
+from tree_sway.files.table_file import filled_lines
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders, Trees
 
@@ -43,7 +44,7 @@ class _Vertex:
     whole: _Vertex | None
     """Vertex of the coarser scale that it is a part of."""
     parent: _Vertex | None
-    position: list[float] | None = None
+    position: list[Any] | None = None
     diameter: float = 0.0
     """Its own diameter, or its parent's where it has none."""
     place: _Vertex | None = None
@@ -73,7 +74,7 @@ def _read(path: Path) -> Trees:
     if not segments:
         raise FormatError(f'no two vertices with {", ".join(_POSITION)}', cure='digitise the tree')
     bases, tips, parents, continues_parent = zip(*segments, strict=True)
-    start, end = (np.array([each.position for each in nodes]) for nodes in (bases, tips))
+    start, end = np.array([[each.position for each in nodes] for nodes in (bases, tips)])
     diameter = np.array([[each.diameter for each in nodes] for nodes in (bases, tips)]).T
     note = (
         f'{len(placed)} vertices with a position, {len(vertices) - len(placed)} without; '
@@ -123,34 +124,27 @@ def _parse(lines: list[str], source: str) -> list[_Vertex]:
     vertices: list[_Vertex] = []
     latest: list[_Vertex] = []
     """Latest vertex of each column."""
-    for number, line in enumerate(lines[begin + 1 :], start=begin + 2):
-        if not line.strip() or line.startswith('#'):
-            continue
-        where = f'{source}:{number}'
+    for number, line in zip(*filled_lines(lines[begin + 1 :]), strict=True):
+        where = f'{source}:{begin + 1 + number}'
         cells = line.rstrip().split('\t')
         column = next((i for i, cell in enumerate(cells[:first]) if cell.strip()), None)
         if column is None:
             raise FormatError(f'no code in the first {first} columns', where=where)
         code = cells[column].strip().replace('<<', '<').replace('++', '+')
-        reference = _reference(latest, column, code, where)
+        above = column if code.startswith('^') else column - 1
+        if above >= len(latest):
+            raise TreeError(f"'{code[:20]}' has no parent", where=where, cure='check its column')
+        reference = latest[above] if above >= 0 else None
         added = _vertices(code.removeprefix('^'), reference, scales, where)
         vertices += added
         latest[column:] = added[-1:]
         values = dict(zip(header[first:], map(finite, cells[first:]), strict=False))
-        position = [value for name in _POSITION if (value := values.get(name)) is not None]
-        added[-1].position = position if len(position) == 3 else None
+        position = [values.get(name) for name in _POSITION]
+        added[-1].position = None if None in position else position
         added[-1].diameter = max(values.get(_DIAMETER) or 0.0, 0.0)
     if not vertices:
         raise FormatError('no vertices')
     return vertices
-
-
-def _reference(latest: Sequence[_Vertex], column: int, code: str, where: str) -> _Vertex | None:
-    """Vertex that a code in a column refers to, None for a code that begins a plant."""
-    above = column if code.startswith('^') else column - 1
-    if above >= len(latest):
-        raise TreeError(f"'{code[:20]}' has no parent", where=where, cure='check its column')
-    return latest[above] if above >= 0 else None
 
 
 def _scales(lines: list[str]) -> dict[str, int]:

@@ -22,6 +22,7 @@ from tree_sway.files.file_format import FileFormat
 from tree_sway.files.table_file import filled_lines, parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Trees
+from tree_sway.files.trees.cylinders.joining import roots_of
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 
 _COLUMNS = 'number type x y z radius parent'.split()
@@ -55,17 +56,13 @@ def _read(path: Path) -> Trees:
         raise FormatError('no nodes', cure='give a node in each line')
     nodes = table.strict(_COLUMNS)[:, 2:6]
     labels, parent = table.family('number', 'parent', [-1], 'node')
-    rows_of: dict[int, list[int]] = {}
-    root = np.arange(len(parent))
-    for row in checked_order(parent, labels).tolist():
-        if parent[row] >= 0:
-            root[row] = root[parent[row]]
-        rows_of.setdefault(int(root[row]), []).append(row)
+    order = checked_order(parent, labels)
+    root = roots_of(parent)[order]
     return tuple(
         cylinders_of_nodes(
-            np.array(rows), nodes[:, :3], 2.0 * nodes[:, 3], parent, labels, cones=True
+            order[root == each], nodes[:, :3], 2.0 * nodes[:, 3], parent, labels, cones=True
         )
-        for rows in rows_of.values()
+        for each in np.flatnonzero(parent < 0)
     )
 
 

@@ -11,7 +11,6 @@ with its own radius.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -32,34 +31,28 @@ def _read(path: Path) -> Trees:
     numbers, lines = filled_lines(read_lines(path))
     if not lines:
         raise FormatError('no header', cure=f'a header names {",".join(_FIELDS)}')
-    of_tree, of_node = _columns(lines[0], f'{path}:{numbers[0]}')
+    of_tree, found, of_node = lines[0].partition('x,y,z,radius')
+    columns = _cells(found + of_node)
+    for name in _FIELDS:
+        if name not in columns:
+            trunks = ': trunks without branches' if name == 'parent_id' else ''
+            raise FormatError(
+                f'no field {name}{trunks}',
+                where=f'{path}:{numbers[0]}',
+                cure='extract the trees with rayextract trees',
+            )
     if len(lines) < 2:
         raise FormatError('no trees')
+    begin = len(_cells(of_tree))
     return tuple(
-        _tree(_filled(split_row(line, ','))[len(of_tree) :], of_node, f'{path}:{number}')
+        _tree(_cells(line)[begin:], columns, f'{path}:{number}')
         for number, line in zip(numbers[1:], lines[1:], strict=True)
     )
 
 
-def _columns(header: str, where: str) -> tuple[list[str], list[str]]:
-    """Names of the attributes of a tree, and of the fields of a node."""
-    before, found, after = header.partition('x,y,z,radius')
-    of_node = _filled((found + after).split(','))
-    for name in _FIELDS:
-        if name not in of_node:
-            trunks = ': trunks without branches' if name == 'parent_id' else ''
-            raise FormatError(
-                f'no field {name}{trunks}',
-                where=where,
-                cure='extract the trees with rayextract trees',
-            )
-    return _filled(before.split(',')), of_node
-
-
-def _filled(cells: Iterable[str]) -> list[str]:
-    """Return the cells that are not empty, without white space around them."""
-    stripped = map(str.strip, cells)
-    return [cell for cell in stripped if cell]
+def _cells(line: str) -> list[str]:
+    """Cells of a line that are not empty."""
+    return [cell for cell in split_row(line, ',') if cell]
 
 
 def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:

@@ -60,7 +60,7 @@ def _read_table(path: Path) -> Trees:
 
 def _joined(table: TextTable) -> Trees:
     """Cylinders of the rows."""
-    values = table.values(list(map(table.index_of, _COLUMNS)))
+    values = table.values(map(table.index_of, _COLUMNS))
     is_point = values[:, 8] == 0.0
     values[is_point, 5:8] = 0.0  # a cylinder without length has no direction
     for row, column in np.argwhere(~np.isfinite(values))[:1]:

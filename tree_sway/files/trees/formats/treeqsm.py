@@ -20,7 +20,6 @@ semicolons between the cells.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 import re
 from typing import Any
@@ -38,8 +37,8 @@ from tree_sway.files.trees.tree_options import FITTED
 
 _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extension': 1}
 """Fields of ``cylinder`` in the order of the columns, and their widths."""
-_VARIABLES = dict(zip(('Rad', 'Len', 'Sta', 'Axe', 'CPar', 'CExt'), _FIELDS, strict=True))
-"""Variables of version 2.0, and the fields of later ones."""
+_VARIABLES = 'Rad Len Sta Axe CPar CExt'.split()
+"""Variables of version 2.0, in the order of the fields of later ones."""
 _COLUMNS = 'radius length start_x start_y start_z axis_x axis_y axis_z parent extension'.split()
 _LEAST_COLUMNS, _MOST_COLUMNS = 9, 15
 """Numbers of columns of an array of cylinders."""
@@ -61,12 +60,14 @@ were averaged have axes of any length in an eighth of them (Jackson et al. 2019)
 def _is_text(head: str) -> bool:
     """Whether a file is a TreeQSM text, by its header, or by the width of its first rows."""
     lines = filled_lines(head.splitlines())[1][:2]
-    if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
+    if not lines:
+        return False
+    if lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
     numbers = [list(map(finite, _cells(line))) for line in lines]
-    names = [re.sub(r'[^a-z]', '', cell.lower()) for cell in _cells(lines[0])] if lines else []
-    places = {re.sub(r'[^a-z]', '', name): place for place, name in enumerate(_COLUMNS)}
-    is_named = bool(names) and {*numbers[0]} == {None}
+    names = list(map(_letters, _cells(lines[0])))
+    places = {_letters(name): place for place, name in enumerate(_COLUMNS)}
+    is_named = {*numbers[0]} == {None}
     if is_named and max(map(len, names)) > _CRYPTIC and not places.keys() & set(names):
         return False  # a header of other columns
     if any(places.get(name, place) != place for place, name in enumerate(names)):
@@ -74,6 +75,10 @@ def _is_text(head: str) -> bool:
     rows = [row for row in numbers if None not in row and len(row) >= _LEAST_COLUMNS]
     is_wide = any(len(row) >= _UNMISTAKABLE for row in rows)
     return is_wide or (bool(rows) and all(_are_cylinders(np.array([row])) for row in rows))
+
+
+def _letters(name: str) -> str:
+    return re.sub('[^a-z]', '', name.lower())
 
 
 def _are_cylinders(table: Floats) -> bool:
@@ -99,9 +104,7 @@ def _read_mat(path: Path) -> Trees:
             cure='save the QSM struct of TreeQSM, or its columns as an array of 9 to 15',
         )
     return tuple(
-        replace(
-            _cylinders(table, [f'{name} cylinder {i + 1}' for i in range(len(table))]), name=name
-        )
+        _cylinders(table, [f'{name} cylinder {i + 1}' for i in range(len(table))], name)
         for name, table in tables
     )
 
@@ -129,15 +132,15 @@ def _cells(line: str) -> list[str]:
 
 def _models(variables: Variables) -> Iterator[tuple[str, Variables]]:
     """Name and columns of each cylinder model, by field name."""
-    if variables.keys() >= _VARIABLES.keys():
-        yield 'tree', {field: variables[name] for name, field in _VARIABLES.items()}
+    if variables.keys() >= {*_VARIABLES}:
+        yield 'tree', dict(zip(_FIELDS, map(variables.get, _VARIABLES), strict=True))
     for name, value in variables.items():
         structs = _structs(value)
         for number, struct in enumerate(structs, start=1):
-            models = _structs(struct.get('cylinder', struct))
-            if models and 'radius' in models[0]:
-                own_name = f'{name}{number}' if len(structs) > 1 else name
-                yield own_name, models[0]
+            own_name = f'{name}{number}' if len(structs) > 1 else name
+            for model in _structs(struct.get('cylinder', struct))[:1]:
+                if 'radius' in model:
+                    yield own_name, model
 
 
 def _arrays(variables: Variables) -> Iterator[tuple[str, Floats]]:
@@ -147,10 +150,11 @@ def _arrays(variables: Variables) -> Iterator[tuple[str, Floats]]:
             inside = {f'{name}{number}': each for number, each in enumerate(value.values(), 1)}
             yield from _arrays(inside)
         elif isinstance(value, np.ndarray) and value.ndim == 2:
-            for array in (value, value.T):
-                has_width = _LEAST_COLUMNS <= array.shape[1] <= _MOST_COLUMNS
-                if len(array) and has_width and _are_cylinders(array.astype(np.float64)):
-                    yield name, array[:, : len(_COLUMNS)].astype(np.float64)
+            whole = value.astype(np.float64)
+            for table in (whole, whole.T):
+                has_width = _LEAST_COLUMNS <= table.shape[1] <= _MOST_COLUMNS
+                if len(table) and has_width and _are_cylinders(table):
+                    yield name, table[:, : len(_COLUMNS)]
                     break
 
 
@@ -158,7 +162,7 @@ def _structs(value: Any) -> list[Variables]:
     """Return the structs of an array of them, whose names are numbers, or a struct alone."""
     if not isinstance(value, dict):
         return []
-    if all(name.isdigit() for name in value):
+    if all(map(str.isdigit, value)):
         return [each for each in value.values() if isinstance(each, dict)]
     return [value]
 
@@ -167,9 +171,9 @@ def _table(name: str, fields: Variables) -> Floats:
     """Columns of the table of cylinders from fields of their names."""
     columns = []
     for field, width in _FIELDS.items():
+        if field == 'extension' and field not in fields:
+            continue  # continuations are found by the diameters, as without its column
         if field not in fields:
-            if field == 'extension':
-                continue  # continuations are found by the diameters, as without its column
             raise FormatError(
                 f"{name} has no numbers '{field}'", cure='save the QSM struct of TreeQSM'
             )
@@ -183,10 +187,11 @@ def _table(name: str, fields: Variables) -> Floats:
     return np.hstack(columns)
 
 
-def _cylinders(table: Floats, labels: list[str]) -> Cylinders:
+def _cylinders(table: Floats, labels: list[str], name: str = '') -> Cylinders:
     """Cylinders from the columns, (n, 9 or 10), with the name of each row in errors."""
     if len(table) == 0:
         raise FormatError('no cylinders')
+    diameter = 2.0 * table[:, [0, 0]]
     length, start, axis = table[:, 1], table[:, 2:5], table[:, 5:8]
     parent, *extension = _indices(table[:, 8:10], labels)
     axis_length = np.linalg.norm(axis, axis=1)
@@ -195,11 +200,10 @@ def _cylinders(table: Floats, labels: list[str]) -> Cylinders:
     axis_length[axis_length == 0.0] = 1.0  # of cylinders without length
     end = start + (length / axis_length)[:, None] * axis
     continues = None
-    if extension:
-        after = extension[0].take(parent, mode='clip')
+    for each in extension:
+        after = each.take(parent, mode='clip')
         continues = (parent >= 0) & (after == np.arange(len(parent)))
-    diameter = 2.0 * table[:, [0, 0]]
-    return Cylinders(start, end, diameter, parent, continues, labels)
+    return Cylinders(start, end, diameter, parent, continues, labels, name)
 
 
 def _indices(numbers: Floats, labels: list[str]) -> Ints:
@@ -213,8 +217,7 @@ def _indices(numbers: Floats, labels: list[str]) -> Ints:
     root = int(numbers[:, 0].min())
     if root not in (-1, 0):
         raise FormatError(f'the smallest parent is {root}', cure='the root has parent 0, or -1')
-    first = root + 1
-    return (numbers.astype(np.int64) - first).T
+    return numbers.T.astype(np.int64) - (root + 1)
 
 
 MAT = FileFormat('treeqsm-mat', ('.mat',), contains(r'\AMATLAB'), _read_mat, FITTED)

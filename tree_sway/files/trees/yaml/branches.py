@@ -42,8 +42,7 @@ def branch_segments(document: YamlDocument) -> Values:
     where = [
         f"{document.where('branches', i)}: branch '{b['name']}'" for i, b in enumerate(branches)
     ]
-    index = _indices(branches, where)
-    parents = _parents(branches, index, where)
+    parents = _parents(branches, where)
     placed: dict[int, _Placed] = {}
     parent = list[int]()
     owner = list[int]()
@@ -54,8 +53,8 @@ def branch_segments(document: YamlDocument) -> Values:
         start, end, diameter = _own_points(branch, where[number])
         base, origin = -1, np.zeros(3)
         if its_parent is not None:
-            sits_on, origin = _attachment(branch, its_parent, start[0], where[number])
-            base = its_parent.first + sits_on
+            base, origin = _attachment(branch, its_parent, start[0], where[number])
+            base += its_parent.first
         first = len(parent)
         placed[number] = _Placed(start + origin, end + origin, diameter, first)
         parent += [base, *range(first, first + len(start) - 1)]
@@ -77,7 +76,8 @@ def branch_segments(document: YamlDocument) -> Values:
     }  # fmt: skip
 
 
-def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
+def _parents(branches: list[Values], where: list[str]) -> list[int]:
+    """Return the numbers of the branches that others are on, -1 for the only one on none."""
     index: dict[str, int] = {}
     for number, branch in enumerate(branches):
         first = index.setdefault(branch['name'], number)
@@ -87,22 +87,20 @@ def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
                 where=where[number],
                 cure='give each branch its own name',
             )
-    return index
-
-
-def _parents(branches: list[Values], index: dict[str, int], where: list[str]) -> list[int]:
+    stems = []
     parents = []
     for number, branch in enumerate(branches):
         name = branch.get('parent')
-        if name is not None and name not in index:
+        if name is None:
+            stems.append(number)
+        elif name not in index:
             cure = nearest(name, index) or 'give a branch of this file'
             raise TreeError(f"orphan: no branch '{name}'", where=where[number], cure=cure)
         parents.append(-1 if name is None else index[name])
-    stems = [number for number, its_parent in enumerate(parents) if its_parent < 0]
-    if len(stems) > 1:
+    for second in stems[1:]:
         raise TreeError(
             'a second branch without a parent',
-            where=where[stems[1]],
+            where=where[second],
             cure=f"give it a parent, as '{branches[stems[0]]['name']}' is the stem",
         )
     return parents
@@ -113,12 +111,10 @@ def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
         what = 'both nodes and segments' if 'nodes' in branch else 'neither nodes nor segments'
         raise FormatError(what, where=where, cure='give one of the two')
     if 'nodes' in branch:
-        nodes = np.array(branch['nodes'], dtype=np.float64)
+        nodes = np.array(branch['nodes'])
         return nodes[:-1, :3], nodes[1:, :3], np.column_stack([nodes[:-1, 3], nodes[1:, 3]])
     links = branch['segments']
-    start, end = (
-        np.array([link[each] for link in links], dtype=np.float64) for each in ('start', 'end')
-    )
+    start, end = (np.array([link[each] for link in links]) for each in ('start', 'end'))
     return start, end, np.array([[1.0, 1.0] * np.array(link['diameter']) for link in links])
 
 
@@ -134,25 +130,21 @@ def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> 
         segment = int(min(np.searchsorted(ends, along), len(length) - 1))
         fraction = 1.0 - (ends[segment] - along) / max(length[segment], 1e-12)
         return segment, on.start[segment] + fraction * axis[segment]
-    if 'segment' not in branch:
-        return _nearest(branch, on, first_node, where), np.zeros(3)
-    if branch['segment'] >= len(length):
-        raise FormatError(
-            f"no segment {branch['segment']} on its parent '{branch['parent']}'",
-            where=where,
-            cure=f'name a segment from 0 to {len(length) - 1}',
-        )
-    return branch['segment'], np.zeros(3)
-
-
-def _nearest(branch: Values, on: _Placed, point: Floats, where: str) -> int:
-    """Segment of the parent nearest to a point, which must touch the parent or nearly so."""
-    segment, distance = nearest_axis(on.start, on.end, point)
-    size = float(np.linalg.norm(on.end - on.start))
-    if distance > on.diameter[segment].max() + 0.01 * size:
+    if 'segment' in branch:
+        segment = branch['segment']
+        if segment >= len(length):
+            raise FormatError(
+                f"no segment {segment} on its parent '{branch['parent']}'",
+                where=where,
+                cure=f'name a segment from 0 to {len(length) - 1}',
+            )
+        return segment, np.zeros(3)
+    segment, distance = nearest_axis(on.start, on.end, first_node)
+    # The first node has to touch the parent, or nearly so.
+    if distance > on.diameter[segment].max() + 0.01 * np.linalg.norm(length):
         raise TreeError(
             f"starts {distance:.3g} m off its parent '{branch['parent']}'",
             where=where,
             cure="move its first node onto the parent, or say where with 'at' or 'segment'",
         )
-    return segment
+    return segment, np.zeros(3)
