@@ -77,6 +77,11 @@ class Sway(NamedTuple):
     frequency: float
     dt: float
 
+    @property
+    def period(self) -> int:
+        """Steps in a period of the first sway."""
+        return max(round(1.0 / (self.frequency * self.dt)), 1)
+
 
 def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tuple[float, float]:
     """
@@ -183,8 +188,8 @@ def _ellipse(bend: Floats, lean: Floats) -> Floats:
 
 def _skewness(moved: Floats, ways: Floats, sway: Sway) -> Floats:
     """Skewness of a lean (n, 2) along some ways (2, a), -1 to 1, (a,); spikes do not count."""
-    block = max(round(1.0 / (sway.frequency * sway.dt)), 1)
-    slow = np.median(moved[: len(moved) // block * block].reshape(-1, block, 2), axis=1)
+    n_periods = len(moved) // sway.period
+    slow = np.median(moved[: n_periods * sway.period].reshape(-1, sway.period, 2), axis=1)
     along = (slow - slow.mean(axis=0)) @ ways
     size = np.maximum(np.square(along).mean(axis=0), 1e-100) ** 1.5
     return np.clip((along**3).mean(axis=0) / size, -1.0, 1.0)
