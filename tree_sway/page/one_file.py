@@ -100,7 +100,7 @@ def _in_planes(message: bytes) -> bytes:
     body = bytearray(message[begin:])
     is_table = header['format'] == 'tree_sway tables'
     for entry in header['arrays'].values():
-        size = {'f32': 4, 'i32': 4, 'i16': 2, 'u8': 1}[entry['type']]
+        size = int(entry['type'][1:]) // 8  # its name ends with its bits
         first = entry['offset']
         part = slice(first, first + size * math.prod(entry['shape']))
         values = np.frombuffer(bytes(body[part]), dtype=np.uint8).reshape(-1, size)

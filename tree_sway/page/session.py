@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import logging
 import threading
 import time
+from typing import Any
 
 from tree_sway.core.scene import Run, SceneSimulator, Simulator
 from tree_sway.core.settings import Settings
@@ -313,21 +314,14 @@ class Session:
                     'notes': [said],
                 }
             )
-        explained = round(simulator.explained, 3) if simulator.sensors else None
-        told: dict[str, object] = {'sensors': sensors}
-        if explained is not None:
-            told['explained'] = explained
+        told: dict[str, Any] = {}
+        if simulator.sensors:
+            told['explained'] = round(simulator.explained, 3)
         if self._band is not None:
             told['band'] = self._band
         change = max(simulator.sway_changes, key=lambda each: each.size, default=None)
-        sentences = sensors_told(
-            sensors,
-            explained=explained,
-            band=self._band,
-            learned=simulator.learned,
-            change=change,
-        )
-        return {**told, 'said': list(sentences)}
+        sentences = sensors_told(sensors, **told, learned=simulator.learned, change=change)
+        return {'sensors': sensors, **told, 'said': list(sentences)}
 
     def written(self, suffix: str) -> bytes:
         """
@@ -356,17 +350,15 @@ class Session:
         scene = SceneState(simulator, _LEAVES)
         set_demand(simulator.simulators, tolerance=self._tolerance)
         simulator.reset()
+
+        def begin(end: float, late: float) -> None:
+            if isinstance(simulator, ObservedTree):
+                simulator.set_time(end)
+                simulator.late_wind.known_late = late
+                simulator.late_wind.is_silent = run.is_wind_silent
+
         intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
-        run = Run(simulator, RATE, intake=intake)
-        if isinstance(simulator, ObservedTree):
-            twin = simulator
-
-            def begin(end: float, late: float) -> None:
-                twin.set_time(end)
-                twin.late_wind.known_late = late
-                twin.late_wind.is_silent = run.is_wind_silent
-
-            run = Run(simulator, RATE, intake=intake, starting=begin)
+        run = Run(simulator, RATE, intake=intake, starting=begin)
         return scene, run
 
     def _build_wanted(self, wanted: Choices) -> None:
@@ -378,13 +370,12 @@ class Session:
             self._next = made
             return
         except TreeSwayError as error:
-            refused = {'name': '', 'reason': str(error)}
+            reason = str(error)
         except Exception as error:
             _LOGGER.exception('%s cannot be built', wanted)
-            reason = f'{wanted.tree} cannot be built ({type(error).__name__}: {error})'
-            refused = {'name': '', 'reason': reason[:400]}
+            reason = f'{wanted.tree} cannot be built ({type(error).__name__}: {error})'[:400]
         if self._server is not None:
-            self._server.announce({'refused': refused}, self.values())
+            self._server.announce({'refused': {'name': '', 'reason': reason}}, self.values())
 
     def _run(self) -> None:
         try:

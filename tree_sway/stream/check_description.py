@@ -35,14 +35,15 @@ Array = NDArray[Any]
 _Forms = Mapping[str, tuple[str, Sequence[str | int]]]
 """Type and axes of arrays by name; an axis is its size, or a name of which all are of one size."""
 
-_TYPES = {'f32': '<f4', 'i32': '<i4', 'i16': '<i2', 'u8': 'u1'}
+TYPES = {'f32': '<f4', 'i32': '<i4', 'i16': '<i2', 'u8': 'u1'}
+"""Types of arrays by their names in messages."""
 
 
 def forms_of(message: str) -> _Forms:
     """Return the forms of the arrays of a kind in a ``description`` or in ``tables``."""
     text = resources.files('tree_sway.page').joinpath('static', 'arrays.json').read_text()
     entries = json.loads(text)[message].items()
-    return {name: (_TYPES[kind], axes) for name, (kind, *axes) in entries}
+    return {name: (TYPES[kind], axes) for name, (kind, *axes) in entries}
 
 
 _LOOK = SPECIES['broadleaf'].look.described(SPECIES['broadleaf'].leaves, 'broadleaf')
@@ -76,8 +77,7 @@ def check_description(
     """
     require('header', _are_words([header['name'], header['frame_id']]))
     require('kinds', len(kinds) > 0)
-    n_segments = np.zeros(len(kinds), dtype=np.int64)
-    n_coordinates = np.zeros(len(kinds), dtype=np.int64)
+    n_segments, n_coordinates = np.zeros((2, len(kinds)), dtype=np.int64)
     for number, (kind, arrays) in enumerate(zip(header['kinds'], kinds, strict=True)):
         with inside(f'kind {number}'):
             size = _check_kind(kind, arrays)
@@ -129,9 +129,7 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> dict[st
 
 def _check_joints(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
     """Refuse branches whose parents, segments and base segments do not fit together."""
-    parent = arrays['branch_parent'].astype(np.int64)
-    first = arrays['branch_first'].astype(np.int64)
-    base_segment = arrays['branch_base_segment'].astype(np.int64)
+    parent, first, base_segment = _whole(arrays, 'parent', 'first', 'base_segment')
     branch = np.arange(size['branches'])
     # Parents come first; only the stem has none.
     lowest = np.minimum(branch - 1, 0)
@@ -145,12 +143,9 @@ def _check_joints(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
 
 def _check_turns(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
     """Refuse branches whose key rotations, or rows of turns, are not in the arrays."""
-    keys = arrays['branch_keys'].astype(np.int64)
-    coordinate = arrays['branch_coordinate'].astype(np.int64)
-    base_turn = arrays['branch_base_turn'].astype(np.int64)
-    turn = arrays['branch_turn'].astype(np.int64)
-    parent = arrays['branch_parent'].astype(np.int64)
-    n_segments = np.diff(arrays['branch_first'].astype(np.int64))
+    keys, coordinate, parent, first = _whole(arrays, 'keys', 'coordinate', 'parent', 'first')
+    base_turn, turn = _whole(arrays, 'base_turn', 'turn')
+    n_segments = np.diff(first)
     rows = size['rows']
     is_stem = np.arange(size['branches']) == 0
 
@@ -163,9 +158,14 @@ def _check_turns(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
     require('branch_turn', np.where(turn == -1, keys <= 2, has_turn))
 
 
-def _is_within(values: Array, lowest: ArrayLike, end: ArrayLike) -> Array:
+def _whole(arrays: Mapping[str, Array], *names: str) -> list[Array]:
+    """Return numbers of each branch, wide enough for their sums."""
+    return [arrays[f'branch_{name}'].astype(np.int64) for name in names]
+
+
+def _is_within(values: Array, lowest: Array | int, end: Array | int) -> Array:
     """Whether values are from the lowest on and below the end."""
-    return np.asarray((np.asarray(lowest) <= values) & (values < np.asarray(end)))
+    return (lowest <= values) & (values < end)
 
 
 def _are_words(values: Sequence[object]) -> bool:

@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
-from tree_sway.stream.check_description import Array, check_description
+from tree_sway.stream.check_description import Array, check_description, TYPES
 from tree_sway.stream.check_tables import check_tables
 from tree_sway.stream.received_scene import ReceivedKind, ReceivedScene
 
@@ -46,8 +46,7 @@ decays.
 
 """
 
-_TYPES = {'f32': '<f4', 'i32': '<i4', 'u8': 'u1', 'i16': '<i2'}
-_NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
+_NAMES = {np.dtype(code): name for name, code in TYPES.items()}
 _PREFIX = struct.Struct('<4sII')
 _FRAME = struct.Struct('<BBBxIIq3hH')
 _ALIGNMENT = 8
@@ -164,9 +163,9 @@ class Description:
         most = len(self.scale)
         part = slice(frame.first, frame.first + count)
         if part.stop > most or (count not in (0, most) and not frame.flags & _PART):
-            what = f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described'
+            what = f'{count} coordinates where {most} are described'
             raise FormatError(what, where='tree state')
-        return np.asarray(frame.coordinates * (self.scale[part] / FULL_SCALE))
+        return frame.coordinates * (self.scale[part] / FULL_SCALE)
 
 
 @dataclass(frozen=True)
@@ -238,7 +237,7 @@ def encode_description(
         array = np.ascontiguousarray(value)
         kind = _NAMES[array.dtype.newbyteorder('<')]
         table[name] = {'type': kind, 'shape': list(array.shape), 'offset': len(body)}
-        body += array.astype(_TYPES[kind]).tobytes()
+        body += array.astype(TYPES[kind]).tobytes()
         body += bytes(-len(body) % _ALIGNMENT)
     content = {**header, 'version': _VERSION, 'arrays': table}
     digest = hashlib.sha256(_json(content) + body).hexdigest()
@@ -372,8 +371,8 @@ def decode_frame(data: bytes) -> Frame:
 
 def part_of_frame(frame: bytes, first: int, count: int) -> bytes:
     """Return a frame with some of the coordinates of one; with the wind only if the count is 0."""
-    head = bytearray(frame[: _FRAME.size])
     size = _FRAME.size
+    head = bytearray(frame[:size])
     count = min(count, int.from_bytes(head[-2:], 'little') - first)
     head[-2:] = count.to_bytes(2, 'little')
     if count == 0:
@@ -414,5 +413,5 @@ def _array(body: memoryview, entry: Mapping[str, Any]) -> Array:
     if any(size < 0 for size in shape):
         raise ValueError(f'a shape of {shape}')
     count = math.prod(shape)
-    flat = np.frombuffer(body, dtype=_TYPES[entry['type']], count=count, offset=entry['offset'])
+    flat = np.frombuffer(body, dtype=TYPES[entry['type']], count=count, offset=entry['offset'])
     return flat.reshape(shape)

@@ -11,10 +11,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.native import bytes_of, NativeModel, NativeStand
@@ -23,6 +22,7 @@ from tree_sway.core.run import bent_too_far, ClampWatch, come_to_rest, fewer
 from tree_sway.core.scene import own_step
 from tree_sway.core.wind.gusts import GustHistory
 from tree_sway.errors import ParameterError
+from tree_sway.stream.check_description import Array
 from tree_sway.stream.table_export import arrays_of_table
 
 _SLOWEST = 0.3
@@ -38,7 +38,7 @@ class ReceivedKind:
     """Trees of one table: numbers and arrays of `exported_table`, and their `DragLaw`."""
 
     numbers: Mapping[str, float]
-    arrays: Mapping[str, NDArray[Any]]
+    arrays: Mapping[str, Array]
     drag_law: Sequence[float]
 
 
@@ -130,7 +130,7 @@ class ReceivedScene:
     def coordinates(self, tree: int) -> Floats:
         """Modal coordinates of a tree, (m,)."""
         size = self._sizes[int(self._kind_of[tree])]
-        return np.asarray(self.stand.states.eta[tree, :size])
+        return self.stand.states.eta[tree, :size]
 
     def state(self) -> Floats:
         """Coordinates of the description of all trees, (M,)."""
@@ -171,7 +171,7 @@ def _native(kind: ReceivedKind) -> NativeModel:
 def _way(kind: ReceivedKind, dt: float) -> Floats:
     """Change of the rate by a change of the displacement over a time step, (m,)."""
     whole = propagator(1.0, kind.arrays['own_damping'], kind.arrays['stiffness'], dt).T
-    return np.asarray(whole[5] / np.maximum(whole[1], _SLOWEST * whole[1].max()))
+    return whole[5] / np.maximum(whole[1], _SLOWEST * whole[1].max())
 
 
 def _check(kinds: Sequence[ReceivedKind], kind_of: Ints, places: Floats, speeds: Floats) -> None:

@@ -123,24 +123,20 @@ class GainDesign:
     def _begin(self, used: tuple[int, ...]) -> LaterWork[Gains]:
         """Begin to find the gains of some sensors."""
         unknown = self._unknown
-        law, apart, forces = unknown.find(), unknown.apart, unknown.forces
-        assert apart is not None
+        (law, apart), forces = unknown.find(), unknown.forces
         assert forces is not None
-        found = [self.felt(k) for k in used]
-        sensed = np.concatenate([rows for rows, _ in found])
         count = round(COMPARED / unknown.dt)
         self._again_after = round(min(_LATER * self._n_seen(used), self._n_seen(used) + count))
-        keys = [(k, self._tracks[k].uses) for k in used]
-        records = [self._tracks[k].beyond(count) for k in used]
         n_tried = round(_TRIED / unknown.dt)
-        tried = [
-            (rows, least, self._noise.get(key, least), record[-n_tried:])
-            for key, (rows, least), record in zip(keys, found, records, strict=True)
-        ]
-        beyond = [
-            BeyondModel(motion[:, :2], rows[:2].reshape(2, 3, -1), float(each[0]))
-            for motion, (rows, each) in zip(records, found, strict=True)
-        ]
+        tried = {}
+        beyond = []
+        for k in used:
+            track, (rows, least) = self._tracks[k], self.felt(k)
+            record, key = track.beyond(count), (k, track.uses)
+            tried[key] = rows, least, self._noise.get(key, least), record[-n_tried:]
+            by_part = rows[:2].reshape(2, 3, -1)
+            beyond.append(BeyondModel(record[:, :2], by_part, float(least[0])))
+        sensed = np.concatenate([rows for rows, *_ in tried.values()])
         usual = UsualLaw(
             unknown.stiffness.copy(),
             unknown.damped,
@@ -159,9 +155,7 @@ class GainDesign:
         def found_later() -> Gains:
             strength = strength_of(beyond, usual)
             own, others = (replace(each, driven=strength * each.driven) for each in (law, apart))
-            noise_of = {
-                key: missed_noise(own, *each) for key, each in zip(keys, tried, strict=True)
-            }
+            noise_of = {key: missed_noise(own, *each) for key, each in tried.items()}
             noise = np.concatenate([*noise_of.values()])
             gains = steady_filter(own, sensed, noise)
             told = told_shares(gains, others, noise)

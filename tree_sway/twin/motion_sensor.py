@@ -12,6 +12,7 @@ its numbers (`sample_ring`).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import compress
 from math import inf, nan
 
 import numpy as np
@@ -107,7 +108,7 @@ class MotionSensor:
         """Why its newest sample was refused, and what to do; empty if it was not."""
         self.stated_noise = (0.0, 0.0, 0.0)
         """Noise that its maker states: acceleration, rate, rotation; 0 where it does not."""
-        self._sample, self._sent = np.full(9, nan), (False, False, False)
+        self._sample = np.full(9, nan)
         self.ring = SampleRing(self._sample)
         """Its last samples."""
         self.reference: Floats | None = None
@@ -173,8 +174,6 @@ class MotionSensor:
         values[:] = nan
         if self.place.is_strain:
             acceleration = rate = None  # gauges measure neither
-        # An orientation of zeros is not measured.
-        self._sent = acceleration is not None, rate is not None, False
         try:
             if acceleration is not None:
                 values[0:3] = acceleration
@@ -191,7 +190,8 @@ class MotionSensor:
             else:
                 outcome = self.ring.keep(stamp)
                 if outcome == 'others':
-                    self._begin()
+                    # An orientation of zeros is not measured.
+                    self._begin((acceleration is not None, rate is not None))
                     outcome = self.ring.keep(stamp)
         except (TypeError, ValueError, OverflowError):
             outcome = 'not_finite'
@@ -214,20 +214,15 @@ class MotionSensor:
         self._latest = max(self._latest, late)
         return self._latest < -_AHEAD and self._latest_before < -_AHEAD
 
-    def _begin(self) -> None:
-        """Begin anew with the quantities of the sample that is offered."""
+    def _begin(self, is_sent: tuple[bool, bool]) -> None:
+        """Begin anew with the quantities of the sample that is offered, of those that are sent."""
         is_given = np.isfinite(self._sample.reshape(3, 3)).all(axis=1).tolist()
-        before, pairs = self.quantities, zip(_QUANTITIES, is_given, strict=True)
-        self.quantities = tuple([name for name, is_there in pairs if is_there])
+        before, self.quantities = self.quantities, tuple(compress(_QUANTITIES, is_given))
         if self.counts.accepted > _MANY:
             self.lost = tuple([name for name in before if name not in self.quantities])
-        self.unusable = tuple(
-            [
-                name
-                for name, is_sent in zip(_QUANTITIES, self._sent, strict=True)
-                if is_sent and name not in (*self.quantities, *self.lost)
-            ]
-        )
+        known = *self.quantities, *self.lost
+        sent = compress(_QUANTITIES, is_sent)
+        self.unusable = tuple([name for name in sent if name not in known])
         self.ring.ask_for(is_given)
         if is_given[2]:
             self.reference = None
@@ -246,4 +241,4 @@ class MotionSensor:
         if self.reference is None:
             self.reference = unit
             self._first_turn = matrix_of(unit)
-        return np.asarray(turn_between(self.reference, unit) @ self._first_turn)
+        return turn_between(self.reference, unit) @ self._first_turn

@@ -86,7 +86,6 @@ class Observer:
         n = self.count = min(MOST_COORDINATES, oscillators.shapes.shape[1])
         """Number of coordinates that are corrected."""
         places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
-        frequency = float(simulator.frequencies(1)[0])
         with one_thread():
             self.unknown = UnknownMotion(simulator, n, dt)
             """Stiffness and damping of the model, and what the wind does not tell."""
@@ -94,7 +93,7 @@ class Observer:
             load = crown_slope(simulator, _USUAL_WIND, oscillators.shapes.shape[1])[:2]
             for track, place in zip(self.tracks, places, strict=True):
                 track.bend = lean_per_load(place, self.unknown.all_stiffness, load)
-        self._fit = RunningFit(self.unknown, self.tracks, places, frequency, dt, wind)
+        self._fit = RunningFit(self.unknown, self.tracks, places, wind)
         if before is not None:
             self._fit.follow(before._fit)
         self._design = GainDesign(self.unknown, self.tracks, places)

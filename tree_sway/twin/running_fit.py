@@ -46,10 +46,6 @@ class RunningFit:
         Law of the unknown motion; its model is the one that fits are relative to.
     tracks, places
         Sensors, and how each is moved by the coordinates of the model.
-    frequency
-        First frequency of the model in [Hz].
-    dt
-        Time step in [s].
     wind
         Wind of the tree, which may be known late; None for one that is not.
 
@@ -60,14 +56,12 @@ class RunningFit:
         unknown: UnknownMotion,
         tracks: Sequence[SensorTrack],
         places: Sequence[PlaceMotion],
-        frequency: float,
-        dt: float,
         wind: LateWind | None = None,
     ) -> None:
         self._unknown, self._tracks, self._wind = unknown, tracks, wind or LateWind()
         n = unknown.count
         self._places = [each.first(n) for each in places]
-        self._frequency, self._dt = frequency, dt
+        frequency, dt = unknown.frequency, unknown.dt
         self._spectra = [SensorSpectrum(frequency, dt, n) for _ in tracks]
         self.watches = [SwayWatch(each, frequency) for each in self._spectra]
         """Whether the tree still sways as it did, by each sensor."""
@@ -136,10 +130,11 @@ class RunningFit:
         self._noted[which], self._powers[which] = 0, 0.0
         first, second = 3 * track.fitted, 3 * track.uses[0]
         n = len(self._stiffness)
-        spectrum = SensorSpectrum(self._frequency, self._dt, n, first, second)
+        frequency = self._unknown.frequency
+        spectrum = SensorSpectrum(frequency, self._unknown.dt, n, first, second)
         self._spectra[which] = spectrum
         track.native.series = spectrum.native.at
-        self.watches[which] = SwayWatch(spectrum, self._frequency)
+        self.watches[which] = SwayWatch(spectrum, frequency)
 
     def advance(self, used: Sequence[int]) -> None:
         """Go on with a fit, or begin one by the sensors in use once there is enough motion."""
@@ -150,9 +145,6 @@ class RunningFit:
                 self.found, known = found
                 if self._is_kept:
                     self._known = known.later()
-            return
-        longest = max([each.seconds for each in self._spectra])
-        if longest < self._fit_after:
             return
         measured = [k for k in used if self._spectra[k].new_stretches]
         seconds = max((self._spectra[k].seconds for k in measured), default=0.0)

@@ -121,11 +121,11 @@ class SensorReadings:
                 self._search = None  # it looks at what the sensor measured before
         if self._wind.moves_model:
             self._find_mounting(step)
-            return int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
         counts = [each.native.count for each in self._tracks]
         found = int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
-        for track, count in zip(self._tracks, counts, strict=True):
-            track.native.count = count  # it remembers nothing of a model without wind
+        if not self._wind.moves_model:
+            for track, count in zip(self._tracks, counts, strict=True):
+                track.native.count = count  # it remembers nothing of a model without wind
         return found
 
     def _find_mounting(self, step: int) -> None:

@@ -125,7 +125,7 @@ def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
 def lean_per_load(motion: PlaceMotion, stiffness: Floats, load: Floats) -> Floats:
     """Tilt of a place by the load of coordinates per wind to east and north, (2, m), (2, 2)."""
     east, north, _ = motion.rotation
-    return np.asarray(np.stack([-north, east]) / stiffness @ load.T)
+    return np.stack([-north, east]) / stiffness @ load.T
 
 
 class OtherSensor(NamedTuple):
@@ -411,11 +411,6 @@ class SensorTrack:
         )  # fmt: skip
         """Its state in the native core."""
 
-    def _uses(self) -> tuple[int, ...]:
-        given = self._quantities
-        first = tuple(k for k, name in enumerate(('acceleration', 'rate')) if name in given)
-        return first if 'acceleration' in given or 'orientation' not in given else (*first, 2)
-
     @property
     def fitted(self) -> int:
         """Quantity whose spectrum is compared with the model's: the rate where there is one."""
@@ -431,7 +426,7 @@ class SensorTrack:
     def _own_noise(self) -> Floats:
         """Standard deviation of the noise that it has at each step, (3,)."""
         known = np.zeros(3) if self.alignment is None else self.alignment.noise
-        return np.asarray(known * math.sqrt(self._held))
+        return known * math.sqrt(self._held)
 
     @property
     def _held(self) -> float:
@@ -631,7 +626,10 @@ class SensorTrack:
         native.in_use = native.is_mounted and not native.is_refused
         if found.problem:
             return
-        self.uses = self._uses()
+        given = self._quantities
+        first = tuple(k for k, name in enumerate(('acceleration', 'rate')) if name in given)
+        is_felt = 'acceleration' in given or 'orientation' not in given
+        self.uses = first if is_felt else (*first, 2)
         self.picked = slice(3 * self.uses[0], 3 * self.uses[-1] + 3)
         written = self._mounting
         written[:9], written[9:11] = found.turn.ravel(), found.scale
@@ -644,9 +642,8 @@ class SensorTrack:
         known = self.alignment
         if known is None:
             return False
-        angle = math.acos(
-            min(max(0.5 * (float(np.vdot(found.turn, known.turn)) - 1.0), -1.0), 1.0)
-        )
+        cosine = 0.5 * (np.vdot(found.turn, known.turn) - 1.0)
+        angle = math.acos(np.clip(cosine, -1.0, 1.0))
         is_other = angle > _OTHER * math.hypot(found.azimuth_error, known.azimuth_error)
         if is_other and self.native.count <= len(self._sensed):
             return False  # it is of all that the present one is of, and of more

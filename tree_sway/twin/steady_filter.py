@@ -210,4 +210,4 @@ def told_shares(gains: SteadyFilter, law: SwayLaw, noise: Floats) -> Floats:
         added = noisy @ noisy.T + kept[:, 2 * m :] @ law.driven @ kept[:, 2 * m :].T
         left = predicted_covariance(kept @ step, np.zeros((0, 3 * m)), added, np.zeros(0))
     alone = np.diag(stationary_covariance(law))[:m]
-    return np.asarray(1.0 - np.diag(left)[:m] / np.maximum(alone, 1e-300))
+    return 1.0 - np.diag(left)[:m] / np.maximum(alone, 1e-300)

@@ -107,11 +107,8 @@ def matched_points(
         ):
             segment = int(near[best])
             found.append((segment, float(share[segment] * tree.length[segment]), row))
-    segments, away, rows = zip(*found, strict=True) if found else ((), (), ())
-    return LimbPoints(
-        np.array(segments, dtype=np.int64), np.array(away, dtype=float),
-        np.array(rows, dtype=np.int64),
-    )  # fmt: skip
+    segments, away, rows = np.array(found).reshape(-1, 3).T.copy()
+    return LimbPoints(segments.astype(np.int64), away, rows.astype(np.int64))
 
 
 def points_behind(tree: Tree, poses: Floats, camera: Camera, image: Floats) -> Ints:
