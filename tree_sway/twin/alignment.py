@@ -309,7 +309,7 @@ def _mounted(
         turns = [_whole_turn(scaled, model, measures[:2])]
     found = [Alignment(turn, scale, has_gravity, 0.0, np.zeros(3)) for turn in turns]
     alike = [_likeness(each.motion(sensed), model, measures)[0] for each in found]
-    best = int(np.argmax(alike))
+    best = np.argmax(alike)
     return replace(found[best], likeness=alike[best])
 
 
@@ -411,7 +411,7 @@ def turn_onto(start: Floats, end: Floats) -> Floats:
     a, b = (each / max(float(np.linalg.norm(each)), 1e-300) for each in (start, end))
     cosine = float(a @ b)
     if cosine < -1.0 + 1e-9:
-        aside = np.cross(a, np.eye(3)[int(np.argmin(np.abs(a)))])
+        aside = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
         aside /= np.linalg.norm(aside)
         return 2.0 * np.outer(aside, aside) - np.eye(3)
     skew = cross_matrix(np.cross(a, b))

@@ -49,6 +49,10 @@ _DUE = 45
 """Steps after which new gains are in use."""
 
 
+_NoiseOf = dict[tuple[int, tuple[int, ...]], Floats]
+"""Noise of the measurements of sensors by their numbers and quantities, (3 k,) each."""
+
+
 class Gains(NamedTuple):
     """
     Gains for some sensors.
@@ -60,7 +64,7 @@ class Gains(NamedTuple):
     """
 
     used: tuple[int, ...]
-    noise_of: dict[tuple[int, tuple[int, ...]], Floats]
+    noise_of: _NoiseOf
     noise: Floats
     filter: SteadyFilter
     trust: Floats
@@ -91,7 +95,7 @@ class GainDesign:
         self._wanted: tuple[int, ...] = ()
         self._work: LaterWork[Gains] | None = None
         self._again_after = 0
-        self._noise: dict[tuple[int, tuple[int, ...]], Floats] = {}
+        self._noise: _NoiseOf = {}
         self.used: tuple[int, ...] = ()
         """Sensors for which gains are found, and which are all in use."""
 

@@ -154,7 +154,7 @@ class ObservedTree(SwaySimulator):
         self._as_made = self.check_tuning()
         self._tuned: tuple[Tuning, ...] = ()
         tunable = self._bank.oscillators.tunable
-        slowest = int(np.argmin(tunable.stiffness / tunable.inertia))
+        slowest = np.argmin(tunable.stiffness / tunable.inertia)
         weight = float(tunable.weight[slowest])
         self._slowest = float(tunable.stiffness[slowest]) - weight, weight
         self._records: dict[str, _Record] = {}
@@ -401,9 +401,10 @@ class ObservedTree(SwaySimulator):
         energy, own = self.observer.energies.tolist()
         if energy <= self._limit:
             return
-        self.observer.limit(self._limit / max(energy, 1e-300))
+        share = self._limit / energy
+        self.observer.limit(share)
         # The wind alone may move it so far; sensors do not add to that.
-        correction *= math.sqrt(self._limit / energy) if own < self._limit else 0.0
+        correction *= math.sqrt(share) if own < self._limit else 0.0
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""

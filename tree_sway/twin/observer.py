@@ -89,7 +89,7 @@ class Observer:
         with one_thread():
             self.unknown = UnknownMotion(simulator, n, dt)
             """Stiffness and damping of the model, and what the wind does not tell."""
-            self._readings = SensorReadings(self.unknown, self.tracks, places, dt, swing, wind)
+            self._readings = SensorReadings(self.unknown, self.tracks, places, swing, wind)
             load = crown_slope(simulator, _USUAL_WIND, oscillators.shapes.shape[1])[:2]
             for track, place in zip(self.tracks, places, strict=True):
                 track.bend = lean_per_load(place, self.unknown.all_stiffness, load)

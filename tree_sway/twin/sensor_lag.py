@@ -234,7 +234,7 @@ def sensor_lag(
 
     loss = max(_LOSSES, key=lambda each: _likelihood(y, told(each), noise))
     likelihood = _over_noise(y, told(loss), share)
-    at = int(np.argmax(likelihood))
+    at = np.argmax(likelihood)
     near = lags[likelihood > likelihood[at] - 0.5]
     own = likelihood[np.abs(lags) <= _NONE + none].max()
     for_own = np.inf

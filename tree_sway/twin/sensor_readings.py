@@ -54,8 +54,6 @@ class SensorReadings:
         Law of the unknown motion, with stiffness and damping of the model.
     tracks, places
         Sensors, and how each is moved by the coordinates of the model.
-    dt
-        Time step in [s].
     swing
         Displacement, rate and force of each coordinate in the wind alone, (m,).
     wind
@@ -68,12 +66,11 @@ class SensorReadings:
         unknown: UnknownMotion,
         tracks: Sequence[SensorTrack],
         places: Sequence[PlaceMotion],
-        dt: float,
         swing: Sequence[Floats],
         wind: LateWind,
     ) -> None:
         self._unknown, self._tracks = unknown, tracks
-        self._dt, self._wind = dt, wind
+        self._dt, self._wind = unknown.dt, wind
         self._told_lag: SensorTrack | None = None
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
         self._sensed = np.zeros((_KEPT, len(tracks), ROWS))

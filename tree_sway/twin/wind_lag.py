@@ -99,7 +99,7 @@ def find_lag(
         other += _sums(np.square(wanted).sum(axis=1), -lags)
     values = np.linalg.svd(covariance, compute_uv=False).sum(axis=1)
     likeness = values / np.sqrt(np.maximum(own * other, 1e-300))
-    best = int(np.argmax(likeness))
+    best = np.argmax(likeness)
     apart = np.abs(lags - lags[best]) >= period
     beside = likeness[apart].max(initial=0.0)
     present = likeness[np.searchsorted(lags, 0)]

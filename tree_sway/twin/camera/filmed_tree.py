@@ -267,14 +267,15 @@ class FilmedTree(ObservedTree):
         if reference != self._reference:
             self._begin(self.camera, reference, poses, image)
         expected = self.camera.project(self.points.at(poses)) + self._offset
-        missed = image[self.points.row] - expected
+        seen = image[self.points.row]
+        missed = seen - expected
         if np.isfinite(missed).all(axis=1).sum() < _FEWEST:
             self.refused += 1
             return
         self._picture_rate += 0.1 * (1.0 / (time - self._seen_at) - self._picture_rate)
         self._seen_at = time
         self._note_behind(image[self._behind] - self._behind_at)
-        moved = np.square(image[self.points.row] - self._begun_at).sum(axis=1)
+        moved = np.square(seen - self._begun_at).sum(axis=1)
         self._square += float(np.nanmedian(moved))
         self._n_seen += 1
         self.filter.see(self._slopes, np.einsum('pij,pj->pi', self._axes, missed))
