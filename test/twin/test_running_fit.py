@@ -26,8 +26,9 @@ def test_air_and_forces_are_weighted_by_the_motion_of_their_stretches() -> None:
         frequency=1.0, dt=DT,
     )  # fmt: skip
     track = SensorTrack(MotionSensor('s', SensorPlace(0, 0.5)), 1.0, DT)
+    track.motion = PlaceMotion(*np.zeros((2, 3, N)))
     track.uses = (0, 1)
-    fit = RunningFit(unknown, [track], [PlaceMotion(*np.zeros((2, 3, N)))])
+    fit = RunningFit(unknown, [track])
     filled = 0
     for speed, power in ((8.0, 90.0), (2.0, 10.0)):
         unknown.mean_speed = speed
@@ -48,9 +49,10 @@ def test_forces_of_a_wind_that_is_known_late_are_compared_as_if_they_had_come_in
         count=N, all_stiffness=np.ones(N), all_damping=np.ones(N), frequency=1.0, dt=DT
     )
     track = SensorTrack(MotionSensor('s', SensorPlace(0, 0.5)), 1.0, DT)
+    track.motion = PlaceMotion(*np.zeros((2, 3, N)))
     track.uses = (0, 1)
     wind = LateWind()
-    fit = RunningFit(unknown, [track], [PlaceMotion(*np.zeros((2, 3, N)))], wind)
+    fit = RunningFit(unknown, [track], wind)
     fit.note(0.0, 0.0)
     measured = fit._spectra[0]
     late, rng = 0.3, np.random.default_rng(0)

@@ -39,8 +39,10 @@ def readings(count: int, seed: int = 0) -> tuple[SensorReadings, list[PlaceMotio
     for each in sensors:
         each._sample[:] = 0.0
     tracks = [SensorTrack(each, 1.0, DT) for each in sensors]
+    for track, place in zip(tracks, places, strict=True):
+        track.motion = place
     state = rng.normal(size=(3, M))
-    return SensorReadings(law, tracks, places, state, LateWind()), places, state
+    return SensorReadings(law, tracks, state, LateWind()), places, state
 
 
 def track_of(of: SensorReadings) -> SensorTrack:

@@ -25,7 +25,6 @@ from tree_sway.twin.gust_strength import BeyondModel, strength_of, UsualLaw
 from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.missed_motion import missed_noise
 from tree_sway.twin.pushed_twigs import push_of
-from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
 from tree_sway.twin.steady_filter import steady_filter, SteadyFilter, told_shares
 from tree_sway.twin.unknown_motion import COMPARED, UnknownMotion
@@ -80,18 +79,13 @@ class GainDesign:
     ----------
     unknown
         Law of the unknown motion.
-    tracks, places
-        Sensors, and how each is moved by the coordinates of the model.
+    tracks
+        Sensors.
 
     """
 
-    def __init__(
-        self,
-        unknown: UnknownMotion,
-        tracks: Sequence[SensorTrack],
-        places: Sequence[PlaceMotion],
-    ) -> None:
-        self._unknown, self._tracks, self._places = unknown, tracks, places
+    def __init__(self, unknown: UnknownMotion, tracks: Sequence[SensorTrack]) -> None:
+        self._unknown, self._tracks = unknown, tracks
         self._wanted: tuple[int, ...] = ()
         self._work: LaterWork[Gains] | None = None
         self._again_after = 0
@@ -154,7 +148,7 @@ class GainDesign:
         damping_ratio = 0.5 * (unknown.all_damping + np.diag(forces.drag)) / np.sqrt(stiffness)
         streaming = np.clip((damping_ratio - _SWAYS) / (_STREAMS - _SWAYS), 0.0, 1.0)
         leaning = 1.0 - streaming[: unknown.count]
-        moved = np.concatenate([self._places[k].displacement[:2] for k in used])
+        moved = np.concatenate([self._tracks[k].motion.displacement[:2] for k in used])
 
         def found_later() -> Gains:
             strength = strength_of(beyond, usual)
@@ -176,7 +170,7 @@ class GainDesign:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
         track, unknown = self._tracks[which], self._unknown
         assert track.alignment is not None
-        first = self._places[which].first(unknown.count)
+        first = track.motion.first(unknown.count)
         rows = sensed_rows(first, unknown.stiffness, unknown.damped)
         felt = as_felt(rows, has_gravity=track.alignment.has_gravity).reshape(3, 3, -1)
         uses = list(track.uses)

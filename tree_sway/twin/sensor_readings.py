@@ -18,7 +18,6 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.native import LIBRARY, NativeReadings
 from tree_sway.twin.late_wind import LateWind, LONGEST_WAY
 from tree_sway.twin.later_work import LaterWork
-from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import (
     FoundMounting,
     LagRange,
@@ -52,8 +51,8 @@ class SensorReadings:
     ----------
     unknown
         Law of the unknown motion, with stiffness and damping of the model.
-    tracks, places
-        Sensors, and how each is moved by the coordinates of the model.
+    tracks
+        Sensors.
     swing
         Displacement, rate and force of each coordinate in the wind alone, (m,).
     wind
@@ -65,7 +64,6 @@ class SensorReadings:
         self,
         unknown: UnknownMotion,
         tracks: Sequence[SensorTrack],
-        places: Sequence[PlaceMotion],
         swing: Sequence[Floats],
         wind: LateWind,
     ) -> None:
@@ -79,7 +77,7 @@ class SensorReadings:
         """Motion of each beyond the model's, in the frame of the tree, (k, 9)."""
         self.is_known = np.zeros(len(tracks), dtype=np.bool_)
         """Which of them there are, (k,)."""
-        shapes = [np.stack([each.displacement, each.rotation]) for each in places]
+        shapes = [np.stack(each.motion) for each in tracks]
         self._law = np.zeros((2, len(unknown.all_stiffness)))
         eta, rate, force = swing
         self.native = NativeReadings(

@@ -376,6 +376,8 @@ class SensorTrack:
     ) -> None:
         self.sensor, self._dt, self.reach = sensor, dt, reach
         self.alignment: Alignment | None = None
+        self.motion = PlaceMotion(*np.zeros((2, 3, 0)))
+        """How the coordinates of the model move its place."""
         self.bend = np.eye(2)
         """Lean of its place per load to east and north, of any unit (`lean_per_load`), (2, 2)."""
         self.tells_little = False

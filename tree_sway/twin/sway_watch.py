@@ -145,14 +145,9 @@ class SwayWatch:
         self.change: SwayChange | None = None
         """The change that lasts, else the last comparison; None before any."""
 
-    @property
-    def is_due(self) -> bool:
-        """Whether a block ends, or bands are being compared."""
-        return self._work is not None or self._spectrum.block_seconds >= BLOCK
-
     def advance(self, winds: tuple[float, float, int]) -> None:
         """
-        End a block, or go on with comparing its bands.
+        End a block that is full, and go on with comparing the bands of the one before.
 
         Parameters
         ----------
