@@ -122,7 +122,7 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
             own = slice(int(record['first']), int(record['end']))
             turns.append(model.segment_turn[own, : keys[branch]].reshape(-1, 3))
             count += len(turns[-1])
-    first = np.concatenate([[0], np.cumsum(sizes)])
+    first = np.cumsum([0, *sizes])
     indices = {
         'branch_parent': branches['parent'],
         'branch_base_segment': branches['base_segment'],

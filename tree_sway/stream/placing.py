@@ -56,9 +56,7 @@ class Placer:
         # that is not whole: then there is no pull.
         nearest_key = np.rint(pulled_key)
         pulled_key = np.where(np.abs(pulled_key - nearest_key) < 1e-6, nearest_key, -1.0)
-        coordinate = 0
-        key = 0
-        row = 0
+        coordinate = key = row = 0
         for number, (basis, n_segments) in enumerate(self._trees):
             n_keys, n_coordinates = basis.shape
             rotations = basis @ coordinates[coordinate : coordinate + n_coordinates]

@@ -151,10 +151,10 @@ class SceneState:
 def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:
     """Clusters of leaves of a kind; None without leaves."""
     simulator = kind.simulator
-    if not count or not is_in_leaf(simulator.models[0].species, simulator.settings.in_leaf):
+    species = simulator.models[0].species
+    if not count or not is_in_leaf(species, simulator.settings.in_leaf):
         return None
     rng = np.random.default_rng(0)
-    species = simulator.models[0].species
-    traits = species.leaves
-    look = species.look
-    return leaf_clusters(simulator.tree, rng, count=count, traits=traits, look=look)
+    return leaf_clusters(
+        simulator.tree, rng, count=count, traits=species.leaves, look=species.look
+    )

@@ -64,8 +64,13 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
         arrays |= {f'{number}/{name}': array for name, array in own.items()}
         entries.append({**numbers, 'drag_law': list(model.models[0].drag_law)})
     arrays['tree_speed'] = simulator.speeds.astype(np.float32)
-    header: dict[str, object] = {'format': 'tree_sway tables', 'description': identity}
-    header |= {'kinds': entries, 'anemometer': None, 'convection_ratio': 1.0}
+    header: dict[str, object] = {
+        'format': 'tree_sway tables',
+        'description': identity,
+        'kinds': entries,
+        'anemometer': None,
+        'convection_ratio': 1.0,
+    }
     gusts = simulator.gusts
     if gusts is not None:
         header['anemometer'] = None if gusts.anemometer is None else gusts.anemometer.tolist()

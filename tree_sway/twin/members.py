@@ -79,8 +79,7 @@ class Uncertainty(NamedTuple):
 
 def uncertainty_of(*, in_leaf: bool) -> Uncertainty:
     """Return the spreads for a tree without measurements."""
-    leaf = LEAVES if in_leaf else 0.0
-    return Uncertainty(drag=math.hypot(DRAG, leaf))
+    return Uncertainty(drag=math.hypot(DRAG, LEAVES * in_leaf))
 
 
 def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> Floats:

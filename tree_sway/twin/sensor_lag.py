@@ -209,11 +209,10 @@ def sensor_lag(
     slow = slow[slow < count // 2]
     if 2 * len(slow) < _FEWEST:
         return SensorLag()
-    lines = [_lines(rows, block) for rows in (sensed, model)]
     # Bins of both signs: the last ones of a transform are those below 0.
     bins = np.concatenate([slow, -slow])
     hertz = bins / period
-    y, x = (each[bins] for each in lines)
+    y, x = (_lines(rows, block)[bins] for rows in (sensed, model))
     shared = np.ones(len(slow), dtype=np.complex128)
     if later is not None:
         shared = later(hertz[: len(slow)])
