@@ -117,8 +117,7 @@ class MotionSensor:
         self._unit = np.zeros(4)
         self._began = -inf
         # Least and most time from stamp to arrival, in this window and in the one before.
-        self._soonest, self._latest = -inf, inf
-        self._soonest_before, self._latest_before = -inf, inf
+        self._late = self._late_before = -inf, inf
 
     @property
     def lateness(self) -> float:
@@ -127,10 +126,8 @@ class MotionSensor:
 
         It is negative where all came before their stamps; 0 before it is known.
         """
-        latest = max(self._latest, self._latest_before)
-        if latest < 0.0:
-            return latest
-        return max(min(self._soonest, self._soonest_before), 0.0)
+        least, most = zip(self._late, self._late_before, strict=True)
+        return max(most) if max(most) < 0.0 else max(min(least), 0.0)
 
     @property
     def is_behind(self) -> bool:
@@ -207,12 +204,10 @@ class MotionSensor:
     def _is_ahead(self, late: float, arrival: float) -> bool:
         """Note how late a sample comes in [s]; whether all of the last seconds came too soon."""
         if not 0.0 <= arrival - self._began < _WINDOW:
-            self._began = arrival
-            self._soonest_before, self._latest_before = self._soonest, self._latest
-            self._soonest, self._latest = inf, -inf
-        self._soonest = min(self._soonest, late)
-        self._latest = max(self._latest, late)
-        return self._latest < -_AHEAD and self._latest_before < -_AHEAD
+            self._began, self._late_before, self._late = arrival, self._late, (inf, -inf)
+        least, most = self._late
+        self._late = min(least, late), max(most, late)
+        return max(self._late[1], self._late_before[1]) < -_AHEAD
 
     def _begin(self, is_sent: tuple[bool, bool]) -> None:
         """Begin anew with the quantities of the sample that is offered, of those that are sent."""
