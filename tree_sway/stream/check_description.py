@@ -31,6 +31,8 @@ MOST_COORDINATES = 65_535
 """Largest number of coordinates of all trees; a frame counts them in two bytes."""
 
 Array = NDArray[Any]
+Arrays = dict[str, Array]
+"""Arrays by name."""
 
 _Forms = Mapping[str, tuple[str, Sequence[str | int]]]
 """Type and axes of arrays by name; an axis is its size, or a name of which all are of one size."""
@@ -53,9 +55,7 @@ _FORMS = forms_of('description')
 """Arrays of a kind; those of leaves only where it has any."""
 
 
-def check_description(
-    header: Mapping[str, Any], kinds: Sequence[Mapping[str, Array]], places: Array
-) -> None:
+def check_description(header: Mapping[str, Any], kinds: Sequence[Arrays], places: Array) -> None:
     """
     Refuse a description whose header or arrays are inconsistent.
 
@@ -105,7 +105,7 @@ def _check_trees(trees: Sequence[Mapping[str, Any]], n_kinds: int, places: Array
     return kinds
 
 
-def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> dict[str, int]:
+def _check_kind(kind: Mapping[str, Any], arrays: Arrays) -> dict[str, int]:
     """Refuse an inconsistent kind; return the sizes of its axes by name."""
     has_leaves = 'leaf_segment' in arrays
     forms = {
@@ -127,7 +127,7 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> dict[st
     return size
 
 
-def _check_joints(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
+def _check_joints(arrays: Arrays, size: Mapping[str, int]) -> None:
     """Refuse branches whose parents, segments and base segments do not fit together."""
     parent, first, base_segment = _whole(arrays, 'parent', 'first', 'base_segment')
     branch = np.arange(size['branches'])
@@ -141,7 +141,7 @@ def _check_joints(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
     require('branch_base_segment', np.where(branch == 0, base_segment == -1, on_parent))
 
 
-def _check_turns(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
+def _check_turns(arrays: Arrays, size: Mapping[str, int]) -> None:
     """Refuse branches whose key rotations, or rows of turns, are not in the arrays."""
     keys, coordinate, parent, first = _whole(arrays, 'keys', 'coordinate', 'parent', 'first')
     base_turn, turn = _whole(arrays, 'base_turn', 'turn')
@@ -158,7 +158,7 @@ def _check_turns(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
     require('branch_turn', np.where(turn == -1, keys <= 2, has_turn))
 
 
-def _whole(arrays: Mapping[str, Array], *names: str) -> list[Array]:
+def _whole(arrays: Arrays, *names: str) -> list[Array]:
     """Return numbers of each branch, wide enough for their sums."""
     return [arrays[f'branch_{name}'].astype(np.int64) for name in names]
 
@@ -190,7 +190,7 @@ def _fits(look: Any, like: Any) -> bool:
     return type(look) is type(like)
 
 
-def sizes_of(arrays: Mapping[str, Array], forms: _Forms) -> dict[str, int]:
+def sizes_of(arrays: Arrays, forms: _Forms) -> dict[str, int]:
     """
     Sizes of the named axes of arrays.
 

@@ -14,7 +14,14 @@ from typing import Any
 import numpy as np
 
 from tree_sway.errors import FormatError, inside
-from tree_sway.stream.check_description import Array, forms_of, is_finite, require, sizes_of
+from tree_sway.stream.check_description import (
+    Array,
+    Arrays,
+    forms_of,
+    is_finite,
+    require,
+    sizes_of,
+)
 
 _MOST_SLOPES = 400_000
 """
@@ -39,9 +46,9 @@ _NOT_NEGATIVE = 'limit', 'own_damping', 'motion', 'cross_damping'
 
 def check_tables(
     header: Mapping[str, Any],
-    kinds: Sequence[Mapping[str, Array]],
+    kinds: Sequence[Arrays],
     speeds: Array,
-    described: Sequence[Mapping[str, Array]],
+    described: Sequence[Arrays],
     n_trees: int,
 ) -> None:
     """
@@ -88,9 +95,7 @@ def check_tables(
             raise FormatError(f'{count} {what}', cure=f'send up to {limit}')
 
 
-def _check_kind(
-    entry: Mapping[str, Any], arrays: Mapping[str, Array], described: Mapping[str, Array]
-) -> int:
+def _check_kind(entry: Mapping[str, Any], arrays: Arrays, described: Arrays) -> int:
     """Refuse an inconsistent table; return its number of coordinates."""
     size = sizes_of(arrays, _FORMS)
     m = size['m']

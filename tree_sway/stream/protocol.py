@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
-from tree_sway.stream.check_description import Array, check_description, TYPES
+from tree_sway.stream.check_description import Array, Arrays, check_description, TYPES
 from tree_sway.stream.check_tables import check_tables
 from tree_sway.stream.received_scene import ReceivedKind, ReceivedScene
 
@@ -125,7 +125,7 @@ class Description:
     """
 
     header: dict[str, Any]
-    arrays: dict[str, Array]
+    arrays: Arrays
     identity: str
 
     def __post_init__(self) -> None:
@@ -143,7 +143,7 @@ class Description:
         return _FRAME.size + 2 * len(self.scale)
 
     @cached_property
-    def kinds(self) -> list[dict[str, Array]]:
+    def kinds(self) -> list[Arrays]:
         """Arrays of each kind by name."""
         return of_kinds(self.arrays, len(self.header['kinds']))
 
@@ -173,7 +173,7 @@ class Tables:
     """Tables by which a receiver solves a scene: header and arrays, as in `tables_of`."""
 
     header: dict[str, Any]
-    arrays: dict[str, Array]
+    arrays: Arrays
 
     def scene(self, description: Description, dt: float) -> ReceivedScene:
         """
@@ -205,9 +205,9 @@ class Tables:
         )
 
 
-def of_kinds(arrays: Mapping[str, Array], count: int) -> list[dict[str, Array]]:
+def of_kinds(arrays: Arrays, count: int) -> list[Arrays]:
     """Arrays of each kind by name, from arrays with its number and a slash before the name."""
-    kinds: list[dict[str, Array]] = [{} for _ in range(count)]
+    kinds: list[Arrays] = [{} for _ in range(count)]
     for name, array in arrays.items():
         number, is_of_kind, own = name.partition('/')
         if is_of_kind:
@@ -216,7 +216,7 @@ def of_kinds(arrays: Mapping[str, Array], count: int) -> list[dict[str, Array]]:
 
 
 def encode_description(
-    header: Mapping[str, object], arrays: Mapping[str, Array], magic: bytes = MAGIC
+    header: Mapping[str, object], arrays: Arrays, magic: bytes = MAGIC
 ) -> bytes:
     """
     Write a description, or tables.
@@ -282,7 +282,7 @@ def _reading(what: str) -> Iterator[None]:
         ) from None
 
 
-def _unpacked(data: bytes, magic: bytes) -> tuple[dict[str, Any], dict[str, Array], str]:
+def _unpacked(data: bytes, magic: bytes) -> tuple[dict[str, Any], Arrays, str]:
     """Header, arrays and identity of a message with given first bytes."""
     if len(data) < _PREFIX.size or data[:4] != magic:
         raise ValueError(f'it does not begin with {magic.decode()}')

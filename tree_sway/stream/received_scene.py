@@ -22,7 +22,7 @@ from tree_sway.core.run import bent_too_far, ClampWatch, come_to_rest, fewer
 from tree_sway.core.scene import own_step
 from tree_sway.core.wind.gusts import GustHistory
 from tree_sway.errors import ParameterError
-from tree_sway.stream.check_description import Array
+from tree_sway.stream.check_description import Arrays
 from tree_sway.stream.table_export import arrays_of_table
 
 _SLOWEST = 0.3
@@ -38,7 +38,7 @@ class ReceivedKind:
     """Trees of one table: numbers and arrays of `exported_table`, and their `DragLaw`."""
 
     numbers: Mapping[str, float]
-    arrays: Mapping[str, Array]
+    arrays: Arrays
     drag_law: Sequence[float]
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Singles
 from tree_sway.core.model import MEANINGS, SwayModel
-from tree_sway.stream.check_description import Array
+from tree_sway.stream.check_description import Array, Arrays
 
 _LEFT_OUT = 1e-2
 """
@@ -55,7 +55,7 @@ _QUANTISED = 12.0**-0.5
 """Root mean square rounding error, over its step."""
 
 
-def exported_table(model: SwayModel, damping: Floats) -> tuple[dict[str, float], dict[str, Array]]:
+def exported_table(model: SwayModel, damping: Floats) -> tuple[dict[str, float], Arrays]:
     """
     Return numbers by name, and arrays of float32 and int16, of a model and its damping (m,).
 
@@ -74,7 +74,7 @@ def exported_table(model: SwayModel, damping: Floats) -> tuple[dict[str, float],
     return numbers, arrays
 
 
-def arrays_of_table(numbers: Mapping[str, float], arrays: Mapping[str, Array]) -> dict[str, Array]:
+def arrays_of_table(numbers: Mapping[str, float], arrays: Arrays) -> Arrays:
     """Return the arrays of a model, as the native core takes them, of an exported table."""
     m = len(arrays['stiffness'])
     found = {name: np.array([numbers[name]]) for name in _NUMBERS}

@@ -10,7 +10,7 @@ from tree_sway.core.run import TableOscillators
 from tree_sway.core.scene import Simulator
 from tree_sway.core.settings import USUAL
 from tree_sway.errors import ParameterError, TreeSwayError
-from tree_sway.stream.check_description import Array
+from tree_sway.stream.check_description import Arrays
 from tree_sway.stream.protocol import encode_description, TABLES
 from tree_sway.stream.scene_kind import SceneKind
 from tree_sway.stream.table_export import exported_table, rounded
@@ -46,7 +46,7 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
     if why_no_tables(kinds) is not None:
         return None
     entries = []
-    arrays = dict[str, Array]()
+    arrays = Arrays()
     for number, kind in enumerate(kinds):
         model = kind.simulator
         bank = model.banks[0].oscillators

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.twin.faded_ends import way_in
+from tree_sway.twin.waves import power_of, way_in
 
 _BANDS = ((0.03, 0.25), (0.5, 2.2))
 """Slow and fast sway, frequencies over the first one of the tree [-]."""
@@ -86,7 +86,7 @@ def _powers(sensor: BeyondModel, law: UsualLaw, low: float, high: float) -> tupl
     waves = np.fft.rfft(window * (sensor.motion - sensor.motion.mean(axis=0)), axis=0)
     size = np.square(window).sum()
     noise = 2.0 * size * sensor.noise**2
-    measured = (np.square(np.abs(waves[first:last])).sum(axis=1) - noise).sum()
+    measured = (power_of(waves[first:last]).sum(axis=1) - noise).sum()
 
     lines = np.arange(first, last, max((last - first) // _LINES, 1))
     w = 2.0 * np.pi * hertz[lines][:, None]

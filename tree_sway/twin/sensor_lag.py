@@ -35,7 +35,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Complexes, Floats
-from tree_sway.twin.faded_ends import way_in
+from tree_sway.twin.waves import power_of, way_in
 
 _SLOW = 0.25
 """Fastest frequency that is compared, over the first one of the tree [-]."""
@@ -218,7 +218,7 @@ def sensor_lag(
         shared = later(hertz[: len(slow)])
         x = x * np.exp(1j * np.angle(np.concatenate([shared, shared.conj()])))
     # By the law of gusts: power that both share over that which they do not, at each f > 0.
-    power = np.minimum(np.square(np.abs(shared)), 1.0 - 1e-9)
+    power = np.minimum(power_of(shared), 1.0 - 1e-9)
     common = power / (1.0 - power)
     circular = 2.0 * np.pi * hertz[: len(slow)]
     least_error = max(float(2.0 * common @ np.square(circular)), 1e-300) ** -0.5
@@ -226,7 +226,7 @@ def sensor_lag(
     lags = _STEP * np.arange(-most, most + 1)
     back = np.exp(-2j * np.pi * hertz * (about + lags[:, None]))
     share = _near(np.abs(bins))
-    noise = share @ np.square(np.abs(y))
+    noise = share @ power_of(y)
 
     def told(loss: float) -> Complexes:
         return x * np.exp(-loss * np.abs(hertz)) * back
@@ -271,18 +271,18 @@ def _near(bins: Floats) -> Floats:
 def _likelihood(y: Complexes, told: Complexes, noise: Floats) -> float:
     """Largest logarithm of the likelihood of what is told at a lag, (l, f), in a known noise."""
     shared = (y * told.conj() / noise).sum(axis=1)
-    size = (np.square(np.abs(told)) / noise).sum(axis=1)
-    return float((np.square(np.abs(shared)) / np.maximum(size, 1e-300)).max())
+    size = (power_of(told) / noise).sum(axis=1)
+    return float((power_of(shared) / np.maximum(size, 1e-300)).max())
 
 
 def _over_noise(y: Complexes, told: Complexes, share: Floats) -> Floats:
     """Logarithm of the likelihood of each lag with its own noise, (l,)."""
-    alone = share @ np.square(np.abs(y))
+    alone = share @ power_of(y)
     noise = np.broadcast_to(alone, told.shape)
     for _ in range(_PASSES):
-        size = (np.square(np.abs(told)) / noise).sum(axis=1)
+        size = (power_of(told) / noise).sum(axis=1)
         gain = (y * told.conj() / noise).sum(axis=1) / np.maximum(size, 1e-300)
-        left = np.square(np.abs(y - gain[:, None] * told))
+        left = power_of(y - gain[:, None] * told)
         noise = left @ share.T
     own = np.log(noise) + left / noise
-    return (np.log(alone) + np.square(np.abs(y)) / alone - own).sum(axis=1)
+    return (np.log(alone) + power_of(y) / alone - own).sum(axis=1)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Complexes, Floats
 from tree_sway.core.native import NativeSeries
 from tree_sway.twin.spectrum_change import WATCHED_BAND
+from tree_sway.twin.waves import power_of
 
 _BAND = (0.5, 2.2)
 """Frequencies over the first one of the tree."""
@@ -137,11 +138,11 @@ class SensorSpectrum:
             self._waves[:, self._next] = waves[self._inside]
         else:
             axis = self._next - self._n_products
-            self._watched[:, axis] += np.square(np.abs(waves[self._is_watched]))
+            self._watched[:, axis] += power_of(waves[self._is_watched])
         self._next += 1
         if self._next == self._n_series:
             self._products += self._waves[:, :, None] * self._waves[:, None].conj()
-            self._power += np.square(np.abs(self._waves[:, :2])).sum(axis=1)
+            self._power += power_of(self._waves[:, :2]).sum(axis=1)
             self.count += 1
 
     @property

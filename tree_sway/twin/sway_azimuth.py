@@ -33,7 +33,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Complexes, Floats, Ints
-from tree_sway.twin.faded_ends import way_in
+from tree_sway.twin.waves import power_of, way_in
 
 _EDGES = (0.0, 0.06, 0.12, 0.25, 0.45, 0.75, 1.4)
 """Edges of the bands, over the first frequency [-]."""
@@ -130,7 +130,7 @@ def _bands(moved: Floats, model: Floats, noise: float, sway: Sway) -> Iterator[_
     y, x = (
         np.fft.rfft(fade * (each - each.mean(axis=0)), axis=0)[lines] for each in (moved, model)
     )
-    power = _smoothed(np.square(np.abs(y)).sum(axis=1), lines)
+    power = _smoothed(power_of(y).sum(axis=1), lines)
     share = 2.0 * noise**2 * np.square(fade).sum() / power
     size = np.sqrt(power)[:, None]
     edges = np.searchsorted(lines, np.array(_EDGES) * sway.frequency * seconds, 'right')
