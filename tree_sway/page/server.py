@@ -30,7 +30,7 @@ from tree_sway.page.page_client import PageClient
 from tree_sway.page.page_settings import PageSettings, USUAL_PORT
 from tree_sway.page.published import Gusts, nothing, Published, Tables
 from tree_sway.page.refusals import Refusals
-from tree_sway.stream import ControlPanel, Value
+from tree_sway.stream import ControlPanel, Json, Value
 
 LARGEST_MESSAGE = 4096
 """Longest message of a client in [bytes]."""
@@ -95,7 +95,7 @@ class PageServer:
         self,
         settings: PageSettings,
         panel: ControlPanel | None = None,
-        status: Callable[[], Mapping[str, object]] | None = None,
+        status: Callable[[], Json] | None = None,
         written: Callable[[str], bytes] | None = None,
         critical_winds: Mapping[str, tuple[float, float]] | None = None,
         film: LiveFilm | PageFilm | None = None,
@@ -214,9 +214,7 @@ class PageServer:
             self._is_woken = True
             self._call(self._wake_all)
 
-    def announce(
-        self, content: Mapping[str, object], values: Mapping[str, Value] | None = None
-    ) -> None:
+    def announce(self, content: Json, values: Mapping[str, Value] | None = None) -> None:
         """
         Send a message to all pages, from any thread.
 
@@ -440,7 +438,7 @@ class PageServer:
         self._refusals.count += 1
         client.say({'refused': _refusal(name, why), 'values': self._panel.values()})
 
-    def _send_all(self, content: Mapping[str, object]) -> None:
+    def _send_all(self, content: Json) -> None:
         for client in self._clients:
             client.say(content)
 

@@ -32,7 +32,7 @@ from tree_sway.page.sensors_told import sensors_told
 from tree_sway.page.server import PageServer
 from tree_sway.page.wind_ahead import wind_ahead
 from tree_sway.simulation import blow, RecordedWind, SimulatedWind, WindSource
-from tree_sway.stream import Refused, SceneState, Value
+from tree_sway.stream import Json, Refused, SceneState, Value
 from tree_sway.twin import ObservedTree, sensor_reports
 from tree_sway.twin.camera import FilmedTree
 
@@ -261,7 +261,7 @@ class Session:
         damping = self._scene.kinds[0].simulator.models[0].damping_ratio
         return {**vars(self.choices), 'damping_ratio': damping}
 
-    def status(self) -> dict[str, object]:
+    def status(self) -> Json:
         """Return the status on the page."""
         simulator = self._scene.simulator
         status = {
@@ -283,7 +283,7 @@ class Session:
             status['motion'] = self._motion_status(simulator)
         return status
 
-    def _motion_status(self, simulator: Simulator) -> dict[str, object]:
+    def _motion_status(self, simulator: Simulator) -> Json:
         """Return what the sensors tell; of a tree without them, that they are not in use."""
         if not isinstance(simulator, ObservedTree):
             return {'sensors': [], 'said': list(sensors_told([]))}

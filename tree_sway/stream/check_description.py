@@ -31,6 +31,9 @@ MOST_COORDINATES = 65_535
 """Largest number of coordinates of all trees; a frame counts them in two bytes."""
 
 Array = NDArray[Any]
+Json = Mapping[str, Any]
+"""An object of JSON."""
+
 Arrays = dict[str, Array]
 """Arrays by name."""
 
@@ -55,7 +58,7 @@ _FORMS = forms_of('description')
 """Arrays of a kind; those of leaves only where it has any."""
 
 
-def check_description(header: Mapping[str, Any], kinds: Sequence[Arrays], places: Array) -> None:
+def check_description(header: Json, kinds: Sequence[Arrays], places: Array) -> None:
     """
     Refuse a description whose header or arrays are inconsistent.
 
@@ -94,7 +97,7 @@ def _refuse_more(what: str, count: int, most: int) -> None:
         raise FormatError(f'{count} {what}', cure=f'describe up to {most}')
 
 
-def _check_trees(trees: Sequence[Mapping[str, Any]], n_kinds: int, places: Array) -> list[int]:
+def _check_trees(trees: Sequence[Json], n_kinds: int, places: Array) -> list[int]:
     """Refuse inconsistent trees; return the number of the kind of each."""
     kinds = [tree['kind'] for tree in trees]
     require('trees', len(trees) > 0 and _are_words([tree['name'] for tree in trees]))
@@ -105,7 +108,7 @@ def _check_trees(trees: Sequence[Mapping[str, Any]], n_kinds: int, places: Array
     return kinds
 
 
-def _check_kind(kind: Mapping[str, Any], arrays: Arrays) -> dict[str, int]:
+def _check_kind(kind: Json, arrays: Arrays) -> dict[str, int]:
     """Refuse an inconsistent kind; return the sizes of its axes by name."""
     has_leaves = 'leaf_segment' in arrays
     forms = {

@@ -8,8 +8,7 @@ The native core that reads tables checks no bounds, as for those of a descriptio
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from tree_sway.stream.check_description import (
     Arrays,
     forms_of,
     is_finite,
+    Json,
     require,
     sizes_of,
 )
@@ -45,7 +45,7 @@ _NOT_NEGATIVE = 'limit', 'own_damping', 'motion', 'cross_damping'
 
 
 def check_tables(
-    header: Mapping[str, Any],
+    header: Json,
     kinds: Sequence[Arrays],
     speeds: Array,
     described: Sequence[Arrays],
@@ -95,7 +95,7 @@ def check_tables(
             raise FormatError(f'{count} {what}', cure=f'send up to {limit}')
 
 
-def _check_kind(entry: Mapping[str, Any], arrays: Arrays, described: Arrays) -> int:
+def _check_kind(entry: Json, arrays: Arrays, described: Arrays) -> int:
     """Refuse an inconsistent table; return its number of coordinates."""
     size = sizes_of(arrays, _FORMS)
     m = size['m']

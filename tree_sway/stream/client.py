@@ -10,13 +10,12 @@ server, or a different one on its port, an old picture must not look alive.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 import contextlib
 import json
 import random
 import threading
 import time
-from typing import Any
 from urllib.parse import parse_qs, urlsplit, urlunsplit
 
 import aiohttp
@@ -26,6 +25,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import refuse_other_kind, within
 from tree_sway.errors import FormatError, ParameterError, TransportError
 from tree_sway.stream.by_wind import ByWind, STEP
+from tree_sway.stream.check_description import Json
 from tree_sway.stream.controls import Value
 from tree_sway.stream.placing import Placer
 from tree_sway.stream.playout import Moment, Playout
@@ -347,7 +347,7 @@ class StreamClient:
             self._awaited += more
             self._say({'credit': more})
 
-    def _say(self, message: Mapping[str, object]) -> None:
+    def _say(self, message: Json) -> None:
         if self._loop is not None and self._socket is not None and not self._socket.closed:
             task = self._loop.create_task(self._socket.send_json(message))
             task.add_done_callback(lambda done: done.cancelled() or done.exception())
@@ -355,7 +355,7 @@ class StreamClient:
     def _hear(self, text: str) -> None:
         if len(text) > _LARGEST_TEXT:
             raise FormatError(f'a text of {len(text)} characters')
-        message: dict[str, Any] = json.loads(text)
+        message: Json = json.loads(text)
         if not isinstance(message, dict):
             raise FormatError(f'{text[:40]!r} where an object belongs')
         if 'pong' in message:

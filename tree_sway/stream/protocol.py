@@ -9,7 +9,7 @@ little-endian. A frame has the state and the wind: some 60 bytes for any size of
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +17,7 @@ import hashlib
 import json
 import math
 import struct
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
-from tree_sway.stream.check_description import Array, Arrays, check_description, TYPES
+from tree_sway.stream.check_description import Array, Arrays, check_description, Json, TYPES
 from tree_sway.stream.check_tables import check_tables
 from tree_sway.stream.received_scene import ReceivedKind, ReceivedScene
 
@@ -124,7 +124,7 @@ class Description:
 
     """
 
-    header: dict[str, Any]
+    header: Json
     arrays: Arrays
     identity: str
 
@@ -172,7 +172,7 @@ class Description:
 class Tables:
     """Tables by which a receiver solves a scene: header and arrays, as in `tables_of`."""
 
-    header: dict[str, Any]
+    header: Json
     arrays: Arrays
 
     def scene(self, description: Description, dt: float) -> ReceivedScene:
@@ -215,9 +215,7 @@ def of_kinds(arrays: Arrays, count: int) -> list[Arrays]:
     return kinds
 
 
-def encode_description(
-    header: Mapping[str, object], arrays: Arrays, magic: bytes = MAGIC
-) -> bytes:
+def encode_description(header: Json, arrays: Arrays, magic: bytes = MAGIC) -> bytes:
     """
     Write a description, or tables.
 
@@ -282,7 +280,7 @@ def _reading(what: str) -> Iterator[None]:
         ) from None
 
 
-def _unpacked(data: bytes, magic: bytes) -> tuple[dict[str, Any], Arrays, str]:
+def _unpacked(data: bytes, magic: bytes) -> tuple[Json, Arrays, str]:
     """Header, arrays and identity of a message with given first bytes."""
     if len(data) < _PREFIX.size or data[:4] != magic:
         raise ValueError(f'it does not begin with {magic.decode()}')
@@ -403,12 +401,12 @@ def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Array, bool]:
     return cut.astype('<i2'), bool((np.abs(exact) > FULL_SCALE / MARGIN).any())
 
 
-def _json(content: Mapping[str, object]) -> bytes:
+def _json(content: Json) -> bytes:
     text = json.dumps(content, sort_keys=True, separators=(',', ':'), allow_nan=False)
     return text.encode()
 
 
-def _array(body: memoryview, entry: Mapping[str, Any]) -> Array:
+def _array(body: memoryview, entry: Json) -> Array:
     shape = tuple(int(size) for size in entry['shape'])
     if any(size < 0 for size in shape):
         raise ValueError(f'a shape of {shape}')
