@@ -227,6 +227,6 @@ def require(name: str, holds: ArrayLike) -> None:
     """Refuse a false condition, or the first row where it is false."""
     rows = np.atleast_1d(holds)
     if not rows.all():
-        row = f'[{int(np.argmin(rows))}]' if np.ndim(holds) else ''
+        row = f'[{np.argmin(rows)}]' if np.ndim(holds) else ''
         what = 'inconsistent with the rest, not finite, or a number that no tree has'
         raise FormatError(what, where=f'{name}{row}')

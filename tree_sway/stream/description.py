@@ -119,7 +119,7 @@ def _branches(simulator: SwaySimulator) -> Arrays:
             count += len(turns[-1])
         if keys[branch] > 2:
             own_turn[branch] = count
-            own = slice(int(record['first']), int(record['end']))
+            own = slice(record['first'], record['end'])
             turns.append(model.segment_turn[own, : keys[branch]].reshape(-1, 3))
             count += len(turns[-1])
     first = np.cumsum([0, *sizes])

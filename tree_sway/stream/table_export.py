@@ -109,7 +109,7 @@ def _passive_factors(slopes: Floats) -> tuple[Array, Array]:
         rows, shapes = _factors(slopes - added * unit)
         product = (rows.astype(np.float64) @ shapes).reshape(-1, m, m)
         work = np.linalg.eigvalsh(product + product.swapaxes(1, 2)) / 2.0
-        gain = float(work.max()) + _MARGIN * float(np.abs(work).max())
+        gain = work.max() + _MARGIN * np.abs(work).max()
         if gain <= 0.0 or not work.any():
             return rows, shapes
         added += gain

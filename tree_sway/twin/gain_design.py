@@ -133,7 +133,7 @@ class GainDesign:
             record, key = track.beyond(count), (k, track.uses)
             tried[key] = rows, least, self._noise.get(key, least), record[-n_tried:]
             by_part = rows[:2].reshape(2, 3, -1)
-            beyond.append(BeyondModel(record[:, :2], by_part, float(least[0])))
+            beyond.append(BeyondModel(record[:, :2], by_part, least[0]))
         sensed = np.concatenate([rows for rows, *_ in tried.values()])
         usual = UsualLaw(
             unknown.stiffness.copy(),

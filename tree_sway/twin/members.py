@@ -259,7 +259,7 @@ class Members:
         """Step the forces of the gusts that an anemometer averages away, in a wind [m/s], (2,)."""
         self._slow += (1.0 - self._decay) * (wind - self._slow)
         beyond = wind - self._slow
-        variance = 0.5 * float(np.square(beyond).sum())
+        variance = 0.5 * np.square(beyond).sum()
         share = max(self._dt / _AVERAGED, 1.0 / self._steps)
         self._fast += share * (variance - self._fast)
         self._gust *= self._decay

@@ -103,7 +103,7 @@ class SampleRing:
 
     def newest_samples(self) -> Floats:
         """Copy the samples that came last, also those that were read, the oldest first, (n, 9)."""
-        end = int(self._first[0] + self._count[0])
+        end = self._first[0] + self._count[0]
         rows = np.arange(end - _NEWEST, end) % CAPACITY
         rows = rows[np.isfinite(self._times[rows])]
         # Times rise, but where the clock was set back.

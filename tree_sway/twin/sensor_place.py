@@ -141,7 +141,7 @@ def _number(text: str) -> float:
 
 def _on_stem(tree: Tree, height: float) -> SensorPlace:
     """Return the lowest place of the stem at a height above the root node in [m]."""
-    last = int(tree.branch_first[1])
+    last = tree.branch_first[1]
     tops = np.maximum.accumulate(tree.end[:last, 2]) - tree.start[0, 2]
     if not 0.0 <= height <= tops[-1]:
         cure = f'give 0 to {tops[-1]:.3g} m, or a branch and a share, as '
@@ -213,8 +213,8 @@ def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
 
 def _joint(tree: Tree, place: SensorPlace) -> int:
     """Return the segment below the joint of its branch that is nearest to a place."""
-    branch = int(tree.branch_of_segment[place.segment])
-    first, last = int(tree.branch_first[branch]), int(tree.branch_first[branch + 1])
+    branch = tree.branch_of_segment[place.segment]
+    first, last = tree.branch_first[branch], tree.branch_first[branch + 1]
     if last - first < 2:
         cure = 'give a branch of two segments or more'
         raise ParameterError('strain of a branch of one segment', where='at', cure=cure)

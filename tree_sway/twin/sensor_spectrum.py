@@ -148,7 +148,7 @@ class SensorSpectrum:
     @property
     def power(self) -> float:
         """Power of east and north at all frequencies, a sum over the stretches."""
-        return float(self._power.sum())
+        return self._power.sum()
 
     @property
     def block_seconds(self) -> float:
@@ -167,7 +167,7 @@ class SensorSpectrum:
 
     def power_of_noise(self, deviation: float) -> float:
         """Power of white noise of a deviation at each frequency of a stretch, of one axis."""
-        return deviation**2 * float(np.square(self._window).sum())
+        return deviation**2 * np.square(self._window).sum()
 
     def note_noise(self, deviation: float, watched: float) -> None:
         """Note the noise in a step of the last stretch of both motions, standard deviations."""
@@ -176,7 +176,7 @@ class SensorSpectrum:
     @property
     def noise(self) -> float:
         """Mean power of the noise of the new stretches at each frequency, of one axis."""
-        new = float(self._noise[0] - self._taken.noise[0])
+        new = self._noise[0] - self._taken.noise[0]
         return new / max(self.new_stretches, 1)
 
     @property

@@ -241,7 +241,7 @@ class SpectrumChange:
             weighted = np.linalg.solve(covariance, self._windows.T)
         information = (self._windows.T * weighted).sum(axis=0)
         sizes = beyond @ weighted / np.sqrt(information)
-        which = int(np.abs(sizes).argmax()) if window is None else window
+        which = np.abs(sizes).argmax() if window is None else window
         n_bands = len(self._bands)
         bands = np.flatnonzero(self._windows[which]) % n_bands
         low, high = self._edges[[bands.min(), bands.max() + 1]].tolist()

@@ -161,7 +161,7 @@ class _Fit:
         times_size, focal_error = _USUAL_FOCAL
         known = {
             'bearing': (0.0, 1e3),
-            'distance': (math.log(times_height * float(np.ptp(tree.end[:, 2]))), distance_error),
+            'distance': (math.log(times_height * np.ptp(tree.end[:, 2])), distance_error),
             'height': _USUAL_HEIGHT,
             'aside': (0.0, 0.5),
             'pitch': (0.0, 0.7),
@@ -193,6 +193,6 @@ class _Fit:
 
         first = self._mean.copy()
         first[0] = bearing
-        rise = float(self._points[:, 2].mean() - self._foot[2]) - first[2]
+        rise = self._points[:, 2].mean() - self._foot[2] - first[2]
         first[4] = math.atan2(rise, math.exp(first[1]))
         return least_squares(self._missed, first, x_scale=np.minimum(self._spread, 1.0))

@@ -276,7 +276,7 @@ class FilmedTree(ObservedTree):
         self._seen_at = time
         self._note_behind(image[self._behind] - self._behind_at)
         moved = np.square(seen - self._begun_at).sum(axis=1)
-        self._square += float(np.nanmedian(moved))
+        self._square += np.nanmedian(moved)
         self._n_seen += 1
         self.filter.see(self._slopes, np.einsum('pij,pj->pi', self._axes, missed))
 
@@ -292,7 +292,7 @@ class FilmedTree(ObservedTree):
             rows, at = np.array(self._shifts), np.linspace(-1.0, 1.0, n)
             # A cloud drifts evenly.
             left = rows - rows.mean(axis=0) - np.outer(at, at @ rows) / (at @ at)
-            found = float(np.sqrt(np.square(left[:, :2]).sum(axis=1).mean()))
+            found = np.sqrt(np.square(left[:, :2]).sum(axis=1).mean())
             self.shake *= _REMEMBERED
             if found > 2.0 * np.median(rows[:, 2]):
                 self.shake = max(self.shake, found)
@@ -390,7 +390,7 @@ class FilmedTree(ObservedTree):
                 f'; what is still moves by {self.shake:.1f} px: the camera shakes, and '
                 'that is taken for sway: use a tripod'
             )
-        if self._picture_rate < _FEW * float(self.frequencies(1)[0]):
+        if self._picture_rate < _FEW * self.frequencies(1)[0]:
             told += (
                 f'; {self._picture_rate:.0f} pictures a second are few: its sway is told roughly'
             )

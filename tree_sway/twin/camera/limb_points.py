@@ -93,7 +93,7 @@ def matched_points(
     start, end = ends_of_poses(poses, tree.length)
     wood = drawn_wood(camera, start, end, tree.base_diameter)
     depth = wood.depth
-    apart = _APART * float(np.ptp(end[:, 2]))
+    apart = _APART * np.ptp(end[:, 2])
     found = []
     for row, (share, gap) in enumerate(zip(*_nearest(wood, image), strict=True)):
         near = np.flatnonzero(gap < within)
@@ -101,12 +101,12 @@ def matched_points(
             continue
         places = start[near] + share[near, None] * (end[near] - start[near])
         covers = gap[near] < 0.5
-        best = int(np.argmin(np.where(covers, depth[near], gap[near] + 1e6)))
+        best = np.argmin(np.where(covers, depth[near], gap[near] + 1e6))
         if np.linalg.norm(places - places[best], axis=1).max() < apart + 2.0 * float(
             tree.base_diameter[near[best]]
         ):
-            segment = int(near[best])
-            found.append((segment, float(share[segment] * tree.length[segment]), row))
+            segment = near[best]
+            found.append((segment, share[segment] * tree.length[segment], row))
     segments, away, rows = np.array(found).reshape(-1, 3).T.copy()
     return LimbPoints(segments.astype(np.int64), away, rows.astype(np.int64))
 
