@@ -10,7 +10,6 @@ A scene as one HTML file that sways by itself: the page, its modules, a descript
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable
 import gzip
 from importlib import resources
 import json
@@ -69,19 +68,19 @@ def page_of_state(scene: SceneState, script: str = '') -> str:
     style = (folder / 'style.css').read_text(encoding='utf-8')
     boot = (folder / _BOOT).read_text(encoding='utf-8')
     core = _packed((folder / _CORE).read_bytes())
-    parts: dict[str, Callable[[], str]] = {
-        '<link rel="stylesheet" href="static/style.css" />': lambda: f'<style>\n{style}</style>',
-        '<script type="module" src="static/app.js"></script>': lambda: (
+    parts = {
+        '<link rel="stylesheet" href="static/style.css" />': f'<style>\n{style}</style>',
+        '<script type="module" src="static/app.js"></script>': (
             f'<script type="text/plain" id="modules">{_packed(_modules(folder))}</script>\n'
             f'    <script type="text/plain" id="core">{core}</script>\n'
             f'    <script type="text/plain" id="scene">{packed}</script>'
         ),
-        '</body>': lambda: (
+        '</body>': (
             f'<script>\n{boot}</script>\n{_module(folder, script) if script else ""}  </body>'
         ),
     }
     for place, part in parts.items():
-        page = page.replace(place, part())
+        page = page.replace(place, part)
     return page
 
 
