@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats
 from tree_sway.core.model import StateBasis
 from tree_sway.core.run import basis_of, Motion, SwaySimulator
 from tree_sway.core.scene import Simulator
@@ -30,7 +30,7 @@ class SceneKind:
     coordinates
         Function that returns the present coordinates of its trees, (t, m).
     numbers
-        Numbers of the trees in the scene, (t,).
+        Numbers of the trees in the scene.
     places
         x, y, z [m], rotation about the vertical [rad] and scale of each, (t, 5).
 
@@ -39,7 +39,7 @@ class SceneKind:
     simulator: SwaySimulator
     basis: StateBasis
     coordinates: Motion
-    numbers: Ints
+    numbers: list[int]
     places: Floats
 
 
@@ -50,5 +50,6 @@ def scene_kinds(simulator: Simulator) -> list[SceneKind]:
     for group in simulator.groups:
         basis = basis_of(group.simulator)
         coordinates, own = group.in_basis(basis), places[group.numbers]
-        kinds.append(SceneKind(group.simulator, basis, coordinates, group.numbers, own))
+        numbers = group.numbers.tolist()
+        kinds.append(SceneKind(group.simulator, basis, coordinates, numbers, own))
     return kinds
