@@ -22,11 +22,13 @@ N, DT = 3, 1.0 / 60.0
 def test_air_and_forces_are_weighted_by_the_motion_of_their_stretches() -> None:
     forces = SimpleNamespace(speed=8.0, air_damping=np.full(N, 0.8), covariance=2.0 * np.eye(N))
     unknown: Any = SimpleNamespace(
-        count=N, all_stiffness=np.ones(N), all_damping=np.ones(N), forces=forces, mean_speed=8.0
-    )
+        count=N, all_stiffness=np.ones(N), all_damping=np.ones(N), forces=forces, mean_speed=8.0,
+        frequency=1.0, dt=DT,
+    )  # fmt: skip
     track = SensorTrack(MotionSensor('s', SensorPlace(0, 0.5)), 1.0, DT)
+    track.motion = PlaceMotion(*np.zeros((2, 3, N)))
     track.uses = (0, 1)
-    fit = RunningFit(unknown, [track], [PlaceMotion(*np.zeros((2, 3, N)))], 1.0, DT)
+    fit = RunningFit(unknown, [track])
     filled = 0
     for speed, power in ((8.0, 90.0), (2.0, 10.0)):
         unknown.mean_speed = speed
@@ -43,11 +45,14 @@ def test_air_and_forces_are_weighted_by_the_motion_of_their_stretches() -> None:
 
 
 def test_forces_of_a_wind_that_is_known_late_are_compared_as_if_they_had_come_in_time() -> None:
-    unknown: Any = SimpleNamespace(count=N, all_stiffness=np.ones(N), all_damping=np.ones(N))
+    unknown: Any = SimpleNamespace(
+        count=N, all_stiffness=np.ones(N), all_damping=np.ones(N), frequency=1.0, dt=DT
+    )
     track = SensorTrack(MotionSensor('s', SensorPlace(0, 0.5)), 1.0, DT)
+    track.motion = PlaceMotion(*np.zeros((2, 3, N)))
     track.uses = (0, 1)
     wind = LateWind()
-    fit = RunningFit(unknown, [track], [PlaceMotion(*np.zeros((2, 3, N)))], 1.0, DT, wind)
+    fit = RunningFit(unknown, [track], wind)
     fit.note(0.0, 0.0)
     measured = fit._spectra[0]
     late, rng = 0.3, np.random.default_rng(0)

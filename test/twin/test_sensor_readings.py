@@ -32,15 +32,17 @@ def readings(count: int, seed: int = 0) -> tuple[SensorReadings, list[PlaceMotio
     rng = np.random.default_rng(seed)
     law: Any = SimpleNamespace(
         all_stiffness=rng.uniform(9.0, 90.0, M), all_damping=rng.random(M), count=N,
-        air_damping=rng.random(N), mean_speed=7.0,
+        air_damping=rng.random(N), mean_speed=7.0, dt=DT,
     )  # fmt: skip
     places = [PlaceMotion(*rng.normal(size=(2, 3, M))) for _ in range(count)]
     sensors = [MotionSensor(f's{k}', SensorPlace(0, 0.5)) for k in range(count)]
     for each in sensors:
         each._sample[:] = 0.0
     tracks = [SensorTrack(each, 1.0, DT) for each in sensors]
+    for track, place in zip(tracks, places, strict=True):
+        track.motion = place
     state = rng.normal(size=(3, M))
-    return SensorReadings(law, tracks, places, DT, state, LateWind()), places, state
+    return SensorReadings(law, tracks, state, LateWind()), places, state
 
 
 def track_of(of: SensorReadings) -> SensorTrack:

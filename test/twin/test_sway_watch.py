@@ -51,8 +51,7 @@ def watched(
             if spectrum.count > n_noted:
                 spectrum.note_noise(NOISE, NOISE)
             blown, count = blown + wind, count + 1
-            if watch.is_due:
-                watch.advance((blown, 0.0, count))
+            watch.advance((blown, 0.0, count))
     return watch
 
 

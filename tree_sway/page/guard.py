@@ -138,10 +138,9 @@ class Guard:
         """Put the token of an address into a cookie, so that the page can drop it."""
         if 'token' not in request.query or not self._token:
             return
-        has_control = self.may_control(request)
         answer.set_cookie(
             self._cookie,
-            cookie_token(self._token) if has_control else self.viewers_token,
+            cookie_token(self._token) if self.may_control(request) else self.viewers_token,
             httponly=True,
             samesite='Strict',
             secure=bool(self._settings.certificate),

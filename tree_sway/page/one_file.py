@@ -10,7 +10,6 @@ A scene as one HTML file that sways by itself: the page, its modules, a descript
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable
 import gzip
 from importlib import resources
 import json
@@ -69,19 +68,19 @@ def page_of_state(scene: SceneState, script: str = '') -> str:
     style = (folder / 'style.css').read_text(encoding='utf-8')
     boot = (folder / _BOOT).read_text(encoding='utf-8')
     core = _packed((folder / _CORE).read_bytes())
-    parts: dict[str, Callable[[], str]] = {
-        '<link rel="stylesheet" href="static/style.css" />': lambda: f'<style>\n{style}</style>',
-        '<script type="module" src="static/app.js"></script>': lambda: (
+    parts = {
+        '<link rel="stylesheet" href="static/style.css" />': f'<style>\n{style}</style>',
+        '<script type="module" src="static/app.js"></script>': (
             f'<script type="text/plain" id="modules">{_packed(_modules(folder))}</script>\n'
             f'    <script type="text/plain" id="core">{core}</script>\n'
             f'    <script type="text/plain" id="scene">{packed}</script>'
         ),
-        '</body>': lambda: (
+        '</body>': (
             f'<script>\n{boot}</script>\n{_module(folder, script) if script else ""}  </body>'
         ),
     }
     for place, part in parts.items():
-        page = page.replace(place, part())
+        page = page.replace(place, part)
     return page
 
 
@@ -100,7 +99,7 @@ def _in_planes(message: bytes) -> bytes:
     body = bytearray(message[begin:])
     is_table = header['format'] == 'tree_sway tables'
     for entry in header['arrays'].values():
-        size = {'f32': 4, 'i32': 4, 'i16': 2, 'u8': 1}[entry['type']]
+        size = int(entry['type'][1:]) // 8  # its name ends with its bits
         first = entry['offset']
         part = slice(first, first + size * math.prod(entry['shape']))
         values = np.frombuffer(bytes(body[part]), dtype=np.uint8).reshape(-1, size)

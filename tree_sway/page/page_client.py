@@ -11,16 +11,14 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import Mapping
 import json
 import math
 import time
-from typing import Any
 
 from aiohttp import web
 
 from tree_sway.page.published import Published
-from tree_sway.stream import FRAME_SIZE, part_of_frame
+from tree_sway.stream import FRAME_SIZE, Json, part_of_frame
 
 _MOST_CREDIT = 64
 """Largest number of frames in transit to one client."""
@@ -93,7 +91,7 @@ class PageClient:
         self._next_state = 0.0
         self._first = 0
 
-    def say(self, content: Mapping[str, object]) -> None:
+    def say(self, content: Json) -> None:
         """Queue a text; a client that does not read loses the oldest, but not its hello."""
         self._texts.append(json.dumps(content))
         self.wake.set()
@@ -112,7 +110,7 @@ class PageClient:
         if self._timer is not None:
             self._timer.cancel()
 
-    def take(self, message: Mapping[str, Any]) -> None:
+    def take(self, message: Json) -> None:
         """
         Take what a message says of the frames that the client wants, and answer its ping.
 
@@ -219,7 +217,7 @@ class PageClient:
         self.wake.set()
 
 
-def _number(message: Mapping[str, Any], name: str, low: float, high: float) -> float:
+def _number(message: Json, name: str, low: float, high: float) -> float:
     """Return an entry that is a number within a range, else raise."""
     value = message[name]
     if type(value) not in (int, float) or not low <= value <= high:

@@ -4,13 +4,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
+
+from tree_sway.stream import Json
 
 Tables = Callable[[], bytes | None]
 """Returns the tables by which clients solve the scene; None if they cannot."""
 
-Gusts = Callable[[], Mapping[str, object] | None]
+Gusts = Callable[[], Json | None]
 """Returns the gusts that are in the scene, as `GustHistory.recent`; None without."""
 
 

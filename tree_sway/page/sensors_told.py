@@ -9,9 +9,9 @@ shows it in its language; a text that is no key is shown as it is.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
+from tree_sway.stream import Json
 from tree_sway.twin import LearnedTree, SwayChange
 
 _MOST = 8
@@ -19,7 +19,7 @@ _LONGEST = 200
 
 
 def sensors_told(
-    sensors: Sequence[Mapping[str, Any]],
+    sensors: Sequence[Json],
     *,
     explained: float | None = None,
     band: Sequence[float] | None = None,

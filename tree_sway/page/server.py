@@ -30,7 +30,7 @@ from tree_sway.page.page_client import PageClient
 from tree_sway.page.page_settings import PageSettings, USUAL_PORT
 from tree_sway.page.published import Gusts, nothing, Published, Tables
 from tree_sway.page.refusals import Refusals
-from tree_sway.stream import ControlPanel, Value
+from tree_sway.stream import ControlPanel, Json, Value
 
 LARGEST_MESSAGE = 4096
 """Longest message of a client in [bytes]."""
@@ -95,7 +95,7 @@ class PageServer:
         self,
         settings: PageSettings,
         panel: ControlPanel | None = None,
-        status: Callable[[], Mapping[str, object]] | None = None,
+        status: Callable[[], Json] | None = None,
         written: Callable[[str], bytes] | None = None,
         critical_winds: Mapping[str, tuple[float, float]] | None = None,
         film: LiveFilm | PageFilm | None = None,
@@ -137,7 +137,7 @@ class PageServer:
         """
         self._thread.start()
         if not self._started.wait(_START_TIMEOUT):
-            self._loop.call_soon_threadsafe(self._ending.set)
+            self._call(self._ending.set)
             what = f'the page is not served after {_START_TIMEOUT:g} s'
             cure = 'try again when this machine has less to do'
             raise TransportError(what, where=self.settings.address, cure=cure)
@@ -151,7 +151,7 @@ class PageServer:
     def close(self) -> None:
         """Close every client and stop; may be called twice."""
         if self._thread.is_alive():
-            self._loop.call_soon_threadsafe(self._ending.set)
+            self._call(self._ending.set)
             self._thread.join(timeout=10.0)
         elif self._thread.ident is None:  # never started
             self._loop.close()
@@ -214,9 +214,7 @@ class PageServer:
             self._is_woken = True
             self._call(self._wake_all)
 
-    def announce(
-        self, content: Mapping[str, object], values: Mapping[str, Value] | None = None
-    ) -> None:
+    def announce(self, content: Json, values: Mapping[str, Value] | None = None) -> None:
         """
         Send a message to all pages, from any thread.
 
@@ -407,45 +405,40 @@ class PageServer:
         client.take(message)
         takers = ('set', self._change), ('pull', self._pull), ('film', self._follow_film)
         for name, action in takers:
-            if name in message and client.may_control:
-                action(client, message[name])
-            elif name in message:
-                self._refuse(client, name, _MAY_LOOK)
+            if name in message:
+                why = action(client, message[name]) if client.may_control else _MAY_LOOK
+                self._refuse(client, name, why)
 
-    def _pull(self, client: PageClient, pull: object) -> None:
+    def _pull(self, client: PageClient, pull: object) -> str | None:
         """Pull for a client, which alone hears of a refusal, now or later."""
 
         def refused(why: str) -> None:
             self._call(lambda: self._refuse(client, 'pull', why))
 
-        why = self._panel.pull(pull, refused)
-        if why is not None:
-            self._refuse(client, 'pull', why)
+        return self._panel.pull(pull, refused)
 
-    def _follow_film(self, client: PageClient, seen: object) -> None:
-        """Take what a page films, or refuse it."""
-        why: str | None = 'no camera of a page is wanted: start with --motion camera:page'
-        if self._of_page is not None:
-            why = self._of_page.take(
-                client, seen, lambda told: self._call(lambda: client.say(told))
-            )
-        if why is not None:
-            self._refuse(client, 'film', why)
+    def _follow_film(self, client: PageClient, seen: object) -> str | None:
+        """Take what a page films; return why not."""
+        if self._of_page is None:
+            return 'no camera of a page is wanted: start with --motion camera:page'
+        return self._of_page.take(client, seen, lambda told: self._call(lambda: client.say(told)))
 
     def _change(self, client: PageClient, change: object) -> None:
         change = change if isinstance(change, dict) else {}
         name = change.get('name')
         why = self._panel.set(name, change.get('value'))
-        if why is not None:
-            self._refuse(client, str(name)[:_LONGEST_NAME], why)
-        else:
+        self._refuse(client, str(name)[:_LONGEST_NAME], why)
+        if why is None:
             self._send_all({'values': self._panel.values()})
 
-    def _refuse(self, client: PageClient, name: str, why: str) -> None:
+    def _refuse(self, client: PageClient, name: str, why: str | None) -> None:
+        """Tell a client why something is refused, if it is."""
+        if why is None:
+            return
         self._refusals.count += 1
         client.say({'refused': _refusal(name, why), 'values': self._panel.values()})
 
-    def _send_all(self, content: Mapping[str, object]) -> None:
+    def _send_all(self, content: Json) -> None:
         for client in self._clients:
             client.say(content)
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import logging
 import threading
 import time
+from typing import Any
 
 from tree_sway.core.scene import Run, SceneSimulator, Simulator
 from tree_sway.core.settings import Settings
@@ -31,7 +32,7 @@ from tree_sway.page.sensors_told import sensors_told
 from tree_sway.page.server import PageServer
 from tree_sway.page.wind_ahead import wind_ahead
 from tree_sway.simulation import blow, RecordedWind, SimulatedWind, WindSource
-from tree_sway.stream import Refused, SceneState, Value
+from tree_sway.stream import Json, Refused, SceneState, Value
 from tree_sway.twin import ObservedTree, sensor_reports
 from tree_sway.twin.camera import FilmedTree
 
@@ -260,7 +261,7 @@ class Session:
         damping = self._scene.kinds[0].simulator.models[0].damping_ratio
         return {**vars(self.choices), 'damping_ratio': damping}
 
-    def status(self) -> dict[str, object]:
+    def status(self) -> Json:
         """Return the status on the page."""
         simulator = self._scene.simulator
         status = {
@@ -282,7 +283,7 @@ class Session:
             status['motion'] = self._motion_status(simulator)
         return status
 
-    def _motion_status(self, simulator: Simulator) -> dict[str, object]:
+    def _motion_status(self, simulator: Simulator) -> Json:
         """Return what the sensors tell; of a tree without them, that they are not in use."""
         if not isinstance(simulator, ObservedTree):
             return {'sensors': [], 'said': list(sensors_told([]))}
@@ -313,21 +314,14 @@ class Session:
                     'notes': [said],
                 }
             )
-        explained = round(simulator.explained, 3) if simulator.sensors else None
-        told: dict[str, object] = {'sensors': sensors}
-        if explained is not None:
-            told['explained'] = explained
+        told: dict[str, Any] = {}
+        if simulator.sensors:
+            told['explained'] = round(simulator.explained, 3)
         if self._band is not None:
             told['band'] = self._band
         change = max(simulator.sway_changes, key=lambda each: each.size, default=None)
-        sentences = sensors_told(
-            sensors,
-            explained=explained,
-            band=self._band,
-            learned=simulator.learned,
-            change=change,
-        )
-        return {**told, 'said': list(sentences)}
+        sentences = sensors_told(sensors, **told, learned=simulator.learned, change=change)
+        return {'sensors': sensors, **told, 'said': list(sentences)}
 
     def written(self, suffix: str) -> bytes:
         """
@@ -356,17 +350,15 @@ class Session:
         scene = SceneState(simulator, _LEAVES)
         set_demand(simulator.simulators, tolerance=self._tolerance)
         simulator.reset()
+
+        def begin(end: float, late: float) -> None:
+            if isinstance(simulator, ObservedTree):
+                simulator.set_time(end)
+                simulator.late_wind.known_late = late
+                simulator.late_wind.is_silent = run.is_wind_silent
+
         intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
-        run = Run(simulator, RATE, intake=intake)
-        if isinstance(simulator, ObservedTree):
-            twin = simulator
-
-            def begin(end: float, late: float) -> None:
-                twin.set_time(end)
-                twin.late_wind.known_late = late
-                twin.late_wind.is_silent = run.is_wind_silent
-
-            run = Run(simulator, RATE, intake=intake, starting=begin)
+        run = Run(simulator, RATE, intake=intake, starting=begin)
         return scene, run
 
     def _build_wanted(self, wanted: Choices) -> None:
@@ -378,13 +370,12 @@ class Session:
             self._next = made
             return
         except TreeSwayError as error:
-            refused = {'name': '', 'reason': str(error)}
+            reason = str(error)
         except Exception as error:
             _LOGGER.exception('%s cannot be built', wanted)
-            reason = f'{wanted.tree} cannot be built ({type(error).__name__}: {error})'
-            refused = {'name': '', 'reason': reason[:400]}
+            reason = f'{wanted.tree} cannot be built ({type(error).__name__}: {error})'[:400]
         if self._server is not None:
-            self._server.announce({'refused': refused}, self.values())
+            self._server.announce({'refused': {'name': '', 'reason': reason}}, self.values())
 
     def _run(self) -> None:
         try:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 
 from tree_sway.simulation import WindSource
+from tree_sway.stream import Json
 
 _COUNT, _EVERY = 20, 0.5
 """Number of speeds, and time between them [s]."""
@@ -15,7 +16,7 @@ _LONGEST = 10.0
 """Time within which a sample of the wind is looked for [s]."""
 
 
-def wind_ahead(wind: WindSource, now: float) -> dict[str, object]:
+def wind_ahead(wind: WindSource, now: float) -> Json:
     """
     Speeds to come, for viewers: the time ``every`` between them [s], and ``speeds`` [m/s].
 

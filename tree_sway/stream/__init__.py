@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
+    from tree_sway.stream.check_description import Json as Json
     from tree_sway.stream.client import StreamClient as StreamClient
     from tree_sway.stream.controls import Control as Control
     from tree_sway.stream.controls import ControlPanel as ControlPanel

@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 import math
-from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.stream.check_description import Json
 from tree_sway.stream.protocol import Description, Frame, PAUSED, RESTARTED
 from tree_sway.stream.received_scene import ReceivedScene
 
@@ -38,7 +37,7 @@ class ByWind:
         self.corrections = 0
         """Number of states that corrected the scene."""
 
-    def go_on(self, gusts: Mapping[str, Any]) -> None:
+    def go_on(self, gusts: Json) -> None:
         """Set the wind of the time before the first frame, as in `SceneState.gusts`."""
         self._heard = gusts['sequence']
         self._scene.gusts.go_on(gusts['mean'], gusts['delay'], gusts['wind'])

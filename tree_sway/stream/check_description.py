@@ -31,18 +31,24 @@ MOST_COORDINATES = 65_535
 """Largest number of coordinates of all trees; a frame counts them in two bytes."""
 
 Array = NDArray[Any]
+Json = Mapping[str, Any]
+"""An object of JSON."""
+
+Arrays = dict[str, Array]
+"""Arrays by name."""
 
 _Forms = Mapping[str, tuple[str, Sequence[str | int]]]
 """Type and axes of arrays by name; an axis is its size, or a name of which all are of one size."""
 
-_TYPES = {'f32': '<f4', 'i32': '<i4', 'i16': '<i2', 'u8': 'u1'}
+TYPES = {'f32': '<f4', 'i32': '<i4', 'i16': '<i2', 'u8': 'u1'}
+"""Types of arrays by their names in messages."""
 
 
 def forms_of(message: str) -> _Forms:
     """Return the forms of the arrays of a kind in a ``description`` or in ``tables``."""
     text = resources.files('tree_sway.page').joinpath('static', 'arrays.json').read_text()
     entries = json.loads(text)[message].items()
-    return {name: (_TYPES[kind], axes) for name, (kind, *axes) in entries}
+    return {name: (TYPES[kind], axes) for name, (kind, *axes) in entries}
 
 
 _LOOK = SPECIES['broadleaf'].look.described(SPECIES['broadleaf'].leaves, 'broadleaf')
@@ -52,9 +58,7 @@ _FORMS = forms_of('description')
 """Arrays of a kind; those of leaves only where it has any."""
 
 
-def check_description(
-    header: Mapping[str, Any], kinds: Sequence[Mapping[str, Array]], places: Array
-) -> None:
+def check_description(header: Json, kinds: Sequence[Arrays], places: Array) -> None:
     """
     Refuse a description whose header or arrays are inconsistent.
 
@@ -76,8 +80,7 @@ def check_description(
     """
     require('header', _are_words([header['name'], header['frame_id']]))
     require('kinds', len(kinds) > 0)
-    n_segments = np.zeros(len(kinds), dtype=np.int64)
-    n_coordinates = np.zeros(len(kinds), dtype=np.int64)
+    n_segments, n_coordinates = np.zeros((2, len(kinds)), dtype=np.int64)
     for number, (kind, arrays) in enumerate(zip(header['kinds'], kinds, strict=True)):
         with inside(f'kind {number}'):
             size = _check_kind(kind, arrays)
@@ -94,7 +97,7 @@ def _refuse_more(what: str, count: int, most: int) -> None:
         raise FormatError(f'{count} {what}', cure=f'describe up to {most}')
 
 
-def _check_trees(trees: Sequence[Mapping[str, Any]], n_kinds: int, places: Array) -> list[int]:
+def _check_trees(trees: Sequence[Json], n_kinds: int, places: Array) -> list[int]:
     """Refuse inconsistent trees; return the number of the kind of each."""
     kinds = [tree['kind'] for tree in trees]
     require('trees', len(trees) > 0 and _are_words([tree['name'] for tree in trees]))
@@ -105,7 +108,7 @@ def _check_trees(trees: Sequence[Mapping[str, Any]], n_kinds: int, places: Array
     return kinds
 
 
-def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> dict[str, int]:
+def _check_kind(kind: Json, arrays: Arrays) -> dict[str, int]:
     """Refuse an inconsistent kind; return the sizes of its axes by name."""
     has_leaves = 'leaf_segment' in arrays
     forms = {
@@ -127,11 +130,9 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> dict[st
     return size
 
 
-def _check_joints(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
+def _check_joints(arrays: Arrays, size: Mapping[str, int]) -> None:
     """Refuse branches whose parents, segments and base segments do not fit together."""
-    parent = arrays['branch_parent'].astype(np.int64)
-    first = arrays['branch_first'].astype(np.int64)
-    base_segment = arrays['branch_base_segment'].astype(np.int64)
+    parent, first, base_segment = _whole(arrays, 'parent', 'first', 'base_segment')
     branch = np.arange(size['branches'])
     # Parents come first; only the stem has none.
     lowest = np.minimum(branch - 1, 0)
@@ -143,14 +144,11 @@ def _check_joints(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
     require('branch_base_segment', np.where(branch == 0, base_segment == -1, on_parent))
 
 
-def _check_turns(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
+def _check_turns(arrays: Arrays, size: Mapping[str, int]) -> None:
     """Refuse branches whose key rotations, or rows of turns, are not in the arrays."""
-    keys = arrays['branch_keys'].astype(np.int64)
-    coordinate = arrays['branch_coordinate'].astype(np.int64)
-    base_turn = arrays['branch_base_turn'].astype(np.int64)
-    turn = arrays['branch_turn'].astype(np.int64)
-    parent = arrays['branch_parent'].astype(np.int64)
-    n_segments = np.diff(arrays['branch_first'].astype(np.int64))
+    keys, coordinate, parent, first = _whole(arrays, 'keys', 'coordinate', 'parent', 'first')
+    base_turn, turn = _whole(arrays, 'base_turn', 'turn')
+    n_segments = np.diff(first)
     rows = size['rows']
     is_stem = np.arange(size['branches']) == 0
 
@@ -163,9 +161,14 @@ def _check_turns(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
     require('branch_turn', np.where(turn == -1, keys <= 2, has_turn))
 
 
-def _is_within(values: Array, lowest: ArrayLike, end: ArrayLike) -> Array:
+def _whole(arrays: Arrays, *names: str) -> list[Array]:
+    """Return numbers of each branch, wide enough for their sums."""
+    return [arrays[f'branch_{name}'].astype(np.int64) for name in names]
+
+
+def _is_within(values: Array, lowest: Array | int, end: Array | int) -> Array:
     """Whether values are from the lowest on and below the end."""
-    return np.asarray((np.asarray(lowest) <= values) & (values < np.asarray(end)))
+    return (lowest <= values) & (values < end)
 
 
 def _are_words(values: Sequence[object]) -> bool:
@@ -190,7 +193,7 @@ def _fits(look: Any, like: Any) -> bool:
     return type(look) is type(like)
 
 
-def sizes_of(arrays: Mapping[str, Array], forms: _Forms) -> dict[str, int]:
+def sizes_of(arrays: Arrays, forms: _Forms) -> dict[str, int]:
     """
     Sizes of the named axes of arrays.
 
@@ -224,6 +227,6 @@ def require(name: str, holds: ArrayLike) -> None:
     """Refuse a false condition, or the first row where it is false."""
     rows = np.atleast_1d(holds)
     if not rows.all():
-        row = f'[{int(np.argmin(rows))}]' if np.ndim(holds) else ''
+        row = f'[{np.argmin(rows)}]' if np.ndim(holds) else ''
         what = 'inconsistent with the rest, not finite, or a number that no tree has'
         raise FormatError(what, where=f'{name}{row}')

@@ -8,13 +8,20 @@ The native core that reads tables checks no bounds, as for those of a descriptio
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
 from tree_sway.errors import FormatError, inside
-from tree_sway.stream.check_description import Array, forms_of, is_finite, require, sizes_of
+from tree_sway.stream.check_description import (
+    Array,
+    Arrays,
+    forms_of,
+    is_finite,
+    Json,
+    require,
+    sizes_of,
+)
 
 _MOST_SLOPES = 400_000
 """
@@ -38,10 +45,10 @@ _NOT_NEGATIVE = 'limit', 'own_damping', 'motion', 'cross_damping'
 
 
 def check_tables(
-    header: Mapping[str, Any],
-    kinds: Sequence[Mapping[str, Array]],
+    header: Json,
+    kinds: Sequence[Arrays],
     speeds: Array,
-    described: Sequence[Mapping[str, Array]],
+    described: Sequence[Arrays],
     n_trees: int,
 ) -> None:
     """
@@ -88,9 +95,7 @@ def check_tables(
             raise FormatError(f'{count} {what}', cure=f'send up to {limit}')
 
 
-def _check_kind(
-    entry: Mapping[str, Any], arrays: Mapping[str, Array], described: Mapping[str, Array]
-) -> int:
+def _check_kind(entry: Json, arrays: Arrays, described: Arrays) -> int:
     """Refuse an inconsistent table; return its number of coordinates."""
     size = sizes_of(arrays, _FORMS)
     m = size['m']

@@ -10,13 +10,12 @@ server, or a different one on its port, an old picture must not look alive.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 import contextlib
 import json
 import random
 import threading
 import time
-from typing import Any
 from urllib.parse import parse_qs, urlsplit, urlunsplit
 
 import aiohttp
@@ -26,6 +25,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import refuse_other_kind, within
 from tree_sway.errors import FormatError, ParameterError, TransportError
 from tree_sway.stream.by_wind import ByWind, STEP
+from tree_sway.stream.check_description import Json
 from tree_sway.stream.controls import Value
 from tree_sway.stream.placing import Placer
 from tree_sway.stream.playout import Moment, Playout
@@ -156,8 +156,8 @@ class StreamClient:
         self.solver: ByWind | None = None
         """Solver of the scene by its wind; None where states are received."""
         self._rate = rate
-        self._on_frame = on_frame
-        self._on_message = on_message
+        self._on_frame = on_frame or _nothing
+        self._on_message = on_message or _nothing
         self._wants_wind: bool | str = 'only' if wind_only else by_wind
         self._placer: Placer | None = None
         self._more = threading.Condition()
@@ -328,7 +328,7 @@ class StreamClient:
             raise FormatError(str(message.data))
         elif message.data[:4] == MAGIC:
             self._describe(decode_description(message.data))
-            self._hand_on(message.data)
+            self._on_message(message.data)
         elif message.data[:4] == TABLES:
             description = self.description
             if description is not None:
@@ -338,11 +338,7 @@ class StreamClient:
             self._awaited -= 1
             self._ask()
             self._push(decode_frame(message.data), time.time())
-            self._hand_on(message.data)
-
-    def _hand_on(self, message: bytes) -> None:
-        if self._on_message is not None:
-            self._on_message(message)
+            self._on_message(message.data)
 
     def _ask(self) -> None:
         """Request as many frames as may be in transit."""
@@ -351,7 +347,7 @@ class StreamClient:
             self._awaited += more
             self._say({'credit': more})
 
-    def _say(self, message: Mapping[str, object]) -> None:
+    def _say(self, message: Json) -> None:
         if self._loop is not None and self._socket is not None and not self._socket.closed:
             task = self._loop.create_task(self._socket.send_json(message))
             task.add_done_callback(lambda done: done.cancelled() or done.exception())
@@ -359,7 +355,7 @@ class StreamClient:
     def _hear(self, text: str) -> None:
         if len(text) > _LARGEST_TEXT:
             raise FormatError(f'a text of {len(text)} characters')
-        message: dict[str, Any] = json.loads(text)
+        message: Json = json.loads(text)
         if not isinstance(message, dict):
             raise FormatError(f'{text[:40]!r} where an object belongs')
         if 'pong' in message:
@@ -394,11 +390,14 @@ class StreamClient:
                 self.playout.push(moment, arrival)
             self.received += is_whole or self._wants_wind == 'only'
             self._more.notify_all()
-        if self._on_frame is not None:
-            try:
-                self._on_frame(frame, arrival)
-            except Exception as error:
-                self.problem = f'on_frame: {type(error).__name__}: {error}'
+        try:
+            self._on_frame(frame, arrival)
+        except Exception as error:
+            self.problem = f'on_frame: {type(error).__name__}: {error}'
+
+
+def _nothing(*_: object) -> None:
+    """Do nothing with what is received."""
 
 
 def _problem_of(error: Exception, url: str) -> str:
@@ -419,16 +418,13 @@ def _refusal_of(error: Exception, url: str) -> TransportError | None:
             cure = 'use a host name that the certificate contains'
         else:
             cure = "set SSL_CERT_FILE to the server's certificate (PEM) if you trust it"
-        return TransportError(f'its certificate is refused ({why})', where=url, cure=cure)
-    if isinstance(error, aiohttp.ClientConnectorSSLError):
+        what = f'its certificate is refused ({why})'
+    elif isinstance(error, aiohttp.ClientConnectorSSLError):
         what = f'it does not speak TLS ({error.strerror or error})'
         cure = 'give http://'
-        return TransportError(what, where=url, cure=cure)
-    if isinstance(error, aiohttp.WSServerHandshakeError) and error.status in _DENIED:
+    elif isinstance(error, aiohttp.WSServerHandshakeError) and error.status in _DENIED:
         what = f'it refuses the connection (HTTP {error.status})'
-        return TransportError(
-            what,
-            where=url,
-            cure='give the token of its page: --token-file, or ?token=... in its address',
-        )
-    return None
+        cure = 'give the token of its page: --token-file, or ?token=... in its address'
+    else:
+        return None
+    return TransportError(what, where=url, cure=cure)

@@ -11,6 +11,7 @@ from tree_sway.core.checks import within
 from tree_sway.core.settings import STIFFEST
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.parameters import Parameter
+from tree_sway.stream.check_description import Json
 
 _GREATEST = 1e15
 _FARTHEST = 1e5
@@ -124,7 +125,7 @@ class ControlPanel:
         self.can_pull = pull is not None
         """Whether a branch can be pulled."""
 
-    def entries(self) -> list[dict[str, object]]:
+    def entries(self) -> list[Json]:
         """All controls for JSON."""
         return [vars(control) for control in self._controls.values()]
 

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.leaves import FLUTTER, LeafClusters
 from tree_sway.core.run import SwaySimulator
-from tree_sway.stream.check_description import Array
+from tree_sway.stream.check_description import Array, Arrays
 from tree_sway.stream.protocol import encode_description
 from tree_sway.stream.scene_kind import SceneKind
 
@@ -60,7 +60,7 @@ def describe_scene(
     places = np.zeros((len(tree_names), 5), dtype=np.float32)
     kind_of = np.zeros(len(tree_names), dtype=np.int64)
     entries = []
-    arrays: dict[str, Array] = {'tree_place': places}
+    arrays: Arrays = {'tree_place': places}
     for number, kind in enumerate(kinds):
         places[kind.numbers] = kind.places
         kind_of[kind.numbers] = number
@@ -102,7 +102,7 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def _branches(simulator: SwaySimulator) -> dict[str, Array]:
+def _branches(simulator: SwaySimulator) -> Arrays:
     """Arrays of one kind for placing its branches by key rotations."""
     tree = simulator.tree
     model = simulator.models[0]
@@ -119,10 +119,10 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
             count += len(turns[-1])
         if keys[branch] > 2:
             own_turn[branch] = count
-            own = slice(int(record['first']), int(record['end']))
+            own = slice(record['first'], record['end'])
             turns.append(model.segment_turn[own, : keys[branch]].reshape(-1, 3))
             count += len(turns[-1])
-    first = np.concatenate([[0], np.cumsum(sizes)])
+    first = np.cumsum([0, *sizes])
     indices = {
         'branch_parent': branches['parent'],
         'branch_base_segment': branches['base_segment'],

@@ -10,7 +10,7 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.model import room_for_fields
 from tree_sway.core.native import bytes_of, NativeModel, NativeStand
 from tree_sway.errors import FormatError
-from tree_sway.stream.check_description import Array
+from tree_sway.stream.check_description import Arrays
 from tree_sway.stream.protocol import Description
 
 _MOST_MEMORY = 512 * 2**20
@@ -56,9 +56,7 @@ class Placer:
         # that is not whole: then there is no pull.
         nearest_key = np.rint(pulled_key)
         pulled_key = np.where(np.abs(pulled_key - nearest_key) < 1e-6, nearest_key, -1.0)
-        coordinate = 0
-        key = 0
-        row = 0
+        coordinate = key = row = 0
         for number, (basis, n_segments) in enumerate(self._trees):
             n_keys, n_coordinates = basis.shape
             rotations = basis @ coordinates[coordinate : coordinate + n_coordinates]
@@ -71,7 +69,7 @@ class Placer:
         return poses
 
 
-def _arrays(arrays: dict[str, Array]) -> dict[str, Array]:
+def _arrays(arrays: Arrays) -> Arrays:
     """Return the arrays by which the native core places a described kind."""
     first = arrays['branch_first'].astype(np.int64)
     parent = arrays['branch_parent'].astype(np.int64)
@@ -109,7 +107,7 @@ def _arrays(arrays: dict[str, Array]) -> dict[str, Array]:
     return found
 
 
-def _base_rotations(arrays: dict[str, Array], parent: Ints, n_keys: Ints, room: int) -> Floats:
+def _base_rotations(arrays: Arrays, parent: Ints, n_keys: Ints, room: int) -> Floats:
     """Rotation of the base of each branch per unit of its parent's keys, (b, room, 3)."""
     base_turn = arrays['branch_base_turn'].astype(np.int64)
     rotation = np.zeros((len(parent), room, 3))
@@ -119,7 +117,7 @@ def _base_rotations(arrays: dict[str, Array], parent: Ints, n_keys: Ints, room: 
     return rotation
 
 
-def _segment_turns(arrays: dict[str, Array], first: Ints, n_keys: Ints, room: int) -> Floats:
+def _segment_turns(arrays: Arrays, first: Ints, n_keys: Ints, room: int) -> Floats:
     """
     Rotation of each segment per unit of its branch's keys, (n, room, 3).
 

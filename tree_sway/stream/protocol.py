@@ -9,7 +9,7 @@ little-endian. A frame has the state and the wind: some 60 bytes for any size of
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +17,7 @@ import hashlib
 import json
 import math
 import struct
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
-from tree_sway.stream.check_description import Array, check_description
+from tree_sway.stream.check_description import Array, Arrays, check_description, Json, TYPES
 from tree_sway.stream.check_tables import check_tables
 from tree_sway.stream.received_scene import ReceivedKind, ReceivedScene
 
@@ -46,8 +46,7 @@ decays.
 
 """
 
-_TYPES = {'f32': '<f4', 'i32': '<i4', 'u8': 'u1', 'i16': '<i2'}
-_NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
+_NAMES = {np.dtype(code): name for name, code in TYPES.items()}
 _PREFIX = struct.Struct('<4sII')
 _FRAME = struct.Struct('<BBBxIIq3hH')
 _ALIGNMENT = 8
@@ -125,8 +124,8 @@ class Description:
 
     """
 
-    header: dict[str, Any]
-    arrays: dict[str, Array]
+    header: Json
+    arrays: Arrays
     identity: str
 
     def __post_init__(self) -> None:
@@ -144,7 +143,7 @@ class Description:
         return _FRAME.size + 2 * len(self.scale)
 
     @cached_property
-    def kinds(self) -> list[dict[str, Array]]:
+    def kinds(self) -> list[Arrays]:
         """Arrays of each kind by name."""
         return of_kinds(self.arrays, len(self.header['kinds']))
 
@@ -164,17 +163,17 @@ class Description:
         most = len(self.scale)
         part = slice(frame.first, frame.first + count)
         if part.stop > most or (count not in (0, most) and not frame.flags & _PART):
-            what = f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described'
+            what = f'{count} coordinates where {most} are described'
             raise FormatError(what, where='tree state')
-        return np.asarray(frame.coordinates * (self.scale[part] / FULL_SCALE))
+        return frame.coordinates * (self.scale[part] / FULL_SCALE)
 
 
 @dataclass(frozen=True)
 class Tables:
     """Tables by which a receiver solves a scene: header and arrays, as in `tables_of`."""
 
-    header: dict[str, Any]
-    arrays: dict[str, Array]
+    header: Json
+    arrays: Arrays
 
     def scene(self, description: Description, dt: float) -> ReceivedScene:
         """
@@ -206,9 +205,9 @@ class Tables:
         )
 
 
-def of_kinds(arrays: Mapping[str, Array], count: int) -> list[dict[str, Array]]:
+def of_kinds(arrays: Arrays, count: int) -> list[Arrays]:
     """Arrays of each kind by name, from arrays with its number and a slash before the name."""
-    kinds: list[dict[str, Array]] = [{} for _ in range(count)]
+    kinds: list[Arrays] = [{} for _ in range(count)]
     for name, array in arrays.items():
         number, is_of_kind, own = name.partition('/')
         if is_of_kind:
@@ -216,9 +215,7 @@ def of_kinds(arrays: Mapping[str, Array], count: int) -> list[dict[str, Array]]:
     return kinds
 
 
-def encode_description(
-    header: Mapping[str, object], arrays: Mapping[str, Array], magic: bytes = MAGIC
-) -> bytes:
+def encode_description(header: Json, arrays: Arrays, magic: bytes = MAGIC) -> bytes:
     """
     Write a description, or tables.
 
@@ -238,7 +235,7 @@ def encode_description(
         array = np.ascontiguousarray(value)
         kind = _NAMES[array.dtype.newbyteorder('<')]
         table[name] = {'type': kind, 'shape': list(array.shape), 'offset': len(body)}
-        body += array.astype(_TYPES[kind]).tobytes()
+        body += array.astype(TYPES[kind]).tobytes()
         body += bytes(-len(body) % _ALIGNMENT)
     content = {**header, 'version': _VERSION, 'arrays': table}
     digest = hashlib.sha256(_json(content) + body).hexdigest()
@@ -283,7 +280,7 @@ def _reading(what: str) -> Iterator[None]:
         ) from None
 
 
-def _unpacked(data: bytes, magic: bytes) -> tuple[dict[str, Any], dict[str, Array], str]:
+def _unpacked(data: bytes, magic: bytes) -> tuple[Json, Arrays, str]:
     """Header, arrays and identity of a message with given first bytes."""
     if len(data) < _PREFIX.size or data[:4] != magic:
         raise ValueError(f'it does not begin with {magic.decode()}')
@@ -372,8 +369,8 @@ def decode_frame(data: bytes) -> Frame:
 
 def part_of_frame(frame: bytes, first: int, count: int) -> bytes:
     """Return a frame with some of the coordinates of one; with the wind only if the count is 0."""
-    head = bytearray(frame[: _FRAME.size])
     size = _FRAME.size
+    head = bytearray(frame[:size])
     count = min(count, int.from_bytes(head[-2:], 'little') - first)
     head[-2:] = count.to_bytes(2, 'little')
     if count == 0:
@@ -404,15 +401,15 @@ def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Array, bool]:
     return cut.astype('<i2'), bool((np.abs(exact) > FULL_SCALE / MARGIN).any())
 
 
-def _json(content: Mapping[str, object]) -> bytes:
+def _json(content: Json) -> bytes:
     text = json.dumps(content, sort_keys=True, separators=(',', ':'), allow_nan=False)
     return text.encode()
 
 
-def _array(body: memoryview, entry: Mapping[str, Any]) -> Array:
+def _array(body: memoryview, entry: Json) -> Array:
     shape = tuple(int(size) for size in entry['shape'])
     if any(size < 0 for size in shape):
         raise ValueError(f'a shape of {shape}')
     count = math.prod(shape)
-    flat = np.frombuffer(body, dtype=_TYPES[entry['type']], count=count, offset=entry['offset'])
+    flat = np.frombuffer(body, dtype=TYPES[entry['type']], count=count, offset=entry['offset'])
     return flat.reshape(shape)

@@ -11,10 +11,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.native import bytes_of, NativeModel, NativeStand
@@ -23,6 +22,7 @@ from tree_sway.core.run import bent_too_far, ClampWatch, come_to_rest, fewer
 from tree_sway.core.scene import own_step
 from tree_sway.core.wind.gusts import GustHistory
 from tree_sway.errors import ParameterError
+from tree_sway.stream.check_description import Arrays
 from tree_sway.stream.table_export import arrays_of_table
 
 _SLOWEST = 0.3
@@ -38,7 +38,7 @@ class ReceivedKind:
     """Trees of one table: numbers and arrays of `exported_table`, and their `DragLaw`."""
 
     numbers: Mapping[str, float]
-    arrays: Mapping[str, NDArray[Any]]
+    arrays: Arrays
     drag_law: Sequence[float]
 
 
@@ -75,15 +75,15 @@ class ReceivedScene:
         """Begin at rest; a `ParameterError` for arrays that a step would read past their end."""
         _check(kinds, kind_of, places, speeds)
         self._dt = dt
-        self._sizes = [len(kind.arrays['stiffness']) for kind in kinds]
         self._kind_of = np.asarray(kind_of)
+        own_kinds = [kinds[kind] for kind in self._kind_of.tolist()]
+        self._sizes = [len(kind.arrays['stiffness']) for kind in own_kinds]
         models = [_native(kind) for kind in kinds]
         self.stand = NativeStand(models, self._kind_of, places, speeds)
         self.stand.set_step(dt)
         self._most_pressure = np.array([kind.numbers['most_pressure'] for kind in kinds])
-        own = [own_step(scale, dt) for scale in places[:, 4].tolist()]
-        pairs = zip(self._kind_of.tolist(), own, strict=True)
-        self._way = [_way(kinds[kind], step) for kind, step in pairs]
+        pairs = zip(own_kinds, places[:, 4].tolist(), strict=True)
+        self._way = [_way(kind, own_step(scale, dt)) for kind, scale in pairs]
         self._steps = 0
         self._watches = dict[int, ClampWatch]()
         self.reduced = 0
@@ -91,8 +91,8 @@ class ReceivedScene:
         self.gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
         self._states = [kind.arrays['state'].astype(np.float64) for kind in kinds]
         self._corrections = [kind.arrays['correction'].astype(np.float64) for kind in kinds]
-        described = np.array([len(kind.arrays['correction']) for kind in kinds])
-        self._first = np.concatenate([[0], np.cumsum(described[self._kind_of])])
+        described = [len(kind.arrays['correction']) for kind in own_kinds]
+        self._first = np.cumsum([0, *described])
 
     def step(self, wind: ArrayLike) -> int:
         """
@@ -125,19 +125,16 @@ class ReceivedScene:
 
     def _count(self, tree: int) -> int:
         """Return the number of coordinates of a tree that are solved."""
-        return self._sizes[int(self._kind_of[tree])] - int(self.stand.states.left_out[tree])
+        return self._sizes[tree] - int(self.stand.states.left_out[tree])
 
     def coordinates(self, tree: int) -> Floats:
         """Modal coordinates of a tree, (m,)."""
-        size = self._sizes[int(self._kind_of[tree])]
-        return np.asarray(self.stand.states.eta[tree, :size])
+        return self.stand.states.eta[tree, : self._sizes[tree]]
 
     def state(self) -> Floats:
         """Coordinates of the description of all trees, (M,)."""
-        states = []
-        for own, kind in zip(self.stand.states.eta, self._kind_of.tolist(), strict=True):
-            states.append(own[: self._sizes[kind]] @ self._states[kind])
-        return np.concatenate(states)
+        trees = zip(self.stand.states.eta, self._sizes, self._kind_of.tolist(), strict=True)
+        return np.concatenate([eta[:size] @ self._states[kind] for eta, size, kind in trees])
 
     def correct(self, values: Floats, first: int = 0, steps: float = math.inf) -> None:
         """
@@ -171,7 +168,7 @@ def _native(kind: ReceivedKind) -> NativeModel:
 def _way(kind: ReceivedKind, dt: float) -> Floats:
     """Change of the rate by a change of the displacement over a time step, (m,)."""
     whole = propagator(1.0, kind.arrays['own_damping'], kind.arrays['stiffness'], dt).T
-    return np.asarray(whole[5] / np.maximum(whole[1], _SLOWEST * whole[1].max()))
+    return whole[5] / np.maximum(whole[1], _SLOWEST * whole[1].max())
 
 
 def _check(kinds: Sequence[ReceivedKind], kind_of: Ints, places: Floats, speeds: Floats) -> None:

@@ -10,12 +10,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.model import StateBasis
 from tree_sway.core.run import basis_of, Motion, SwaySimulator
 from tree_sway.core.scene import Simulator
-
-_Place = tuple[float, float, float, float, float]
-"""Place of a tree: x, y, z [m], rotation about the vertical [rad], scale."""
 
 
 @dataclass(eq=False)
@@ -31,8 +29,10 @@ class SceneKind:
         Basis of its state.
     coordinates
         Function that returns the present coordinates of its trees, (t, m).
-    numbers, places
-        Numbers of the trees in the scene, and their places.
+    numbers
+        Numbers of the trees in the scene.
+    places
+        x, y, z [m], rotation about the vertical [rad] and scale of each, (t, 5).
 
     """
 
@@ -40,7 +40,7 @@ class SceneKind:
     basis: StateBasis
     coordinates: Motion
     numbers: list[int]
-    places: list[_Place]
+    places: Floats
 
 
 def scene_kinds(simulator: Simulator) -> list[SceneKind]:
@@ -49,7 +49,7 @@ def scene_kinds(simulator: Simulator) -> list[SceneKind]:
     places = simulator.places
     for group in simulator.groups:
         basis = basis_of(group.simulator)
-        where = [(x, y, z, yaw, scale) for x, y, z, yaw, scale in places[group.numbers].tolist()]
-        coordinates = group.in_basis(basis)
-        kinds.append(SceneKind(group.simulator, basis, coordinates, group.numbers.tolist(), where))
+        coordinates, own = group.in_basis(basis), places[group.numbers]
+        numbers = group.numbers.tolist()
+        kinds.append(SceneKind(group.simulator, basis, coordinates, numbers, own))
     return kinds

@@ -4,14 +4,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves import leaf_clusters, LeafClusters
 from tree_sway.core.scene import Simulator
 from tree_sway.core.setup import is_in_leaf
+from tree_sway.stream.check_description import Json
 from tree_sway.stream.description import describe_scene
 from tree_sway.stream.protocol import (
     decode_description,
@@ -77,7 +76,7 @@ class SceneState:
             self._tables = tables_of(self.simulator, self.kinds, self.identity)
         return self._tables
 
-    def gusts(self) -> dict[str, Any] | None:
+    def gusts(self) -> Json | None:
         """Return the gusts in the scene at the last frame, and its ``sequence``."""
         sequence, time = self._framed
         gusts = self.simulator.gusts
@@ -151,10 +150,10 @@ class SceneState:
 def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:
     """Clusters of leaves of a kind; None without leaves."""
     simulator = kind.simulator
-    if not count or not is_in_leaf(simulator.models[0].species, simulator.settings.in_leaf):
+    species = simulator.models[0].species
+    if not count or not is_in_leaf(species, simulator.settings.in_leaf):
         return None
     rng = np.random.default_rng(0)
-    species = simulator.models[0].species
-    traits = species.leaves
-    look = species.look
-    return leaf_clusters(simulator.tree, rng, count=count, traits=traits, look=look)
+    return leaf_clusters(
+        simulator.tree, rng, count=count, traits=species.leaves, look=species.look
+    )

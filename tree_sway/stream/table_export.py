@@ -17,13 +17,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 import math
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Singles
 from tree_sway.core.model import MEANINGS, SwayModel
+from tree_sway.stream.check_description import Array, Arrays
 
 _LEFT_OUT = 1e-2
 """
@@ -56,9 +55,7 @@ _QUANTISED = 12.0**-0.5
 """Root mean square rounding error, over its step."""
 
 
-def exported_table(
-    model: SwayModel, damping: Floats
-) -> tuple[dict[str, float], dict[str, NDArray[Any]]]:
+def exported_table(model: SwayModel, damping: Floats) -> tuple[dict[str, float], Arrays]:
     """
     Return numbers by name, and arrays of float32 and int16, of a model and its damping (m,).
 
@@ -77,9 +74,7 @@ def exported_table(
     return numbers, arrays
 
 
-def arrays_of_table(
-    numbers: Mapping[str, float], arrays: Mapping[str, NDArray[Any]]
-) -> dict[str, NDArray[Any]]:
+def arrays_of_table(numbers: Mapping[str, float], arrays: Arrays) -> Arrays:
     """Return the arrays of a model, as the native core takes them, of an exported table."""
     m = len(arrays['stiffness'])
     found = {name: np.array([numbers[name]]) for name in _NUMBERS}
@@ -105,7 +100,7 @@ def rounded(values: Floats, bits: int) -> Singles:
     return (single >> bits << bits).astype(np.uint32).view(np.float32)
 
 
-def _passive_factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
+def _passive_factors(slopes: Floats) -> tuple[Array, Array]:
     """Return rows and shapes as `_factors`, whose product adds energy to no motion."""
     m = math.isqrt(slopes.shape[1])
     unit = np.eye(m).ravel()
@@ -114,13 +109,13 @@ def _passive_factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
         rows, shapes = _factors(slopes - added * unit)
         product = (rows.astype(np.float64) @ shapes).reshape(-1, m, m)
         work = np.linalg.eigvalsh(product + product.swapaxes(1, 2)) / 2.0
-        gain = float(work.max()) + _MARGIN * float(np.abs(work).max())
+        gain = work.max() + _MARGIN * np.abs(work).max()
         if gain <= 0.0 or not work.any():
             return rows, shapes
         added += gain
 
 
-def _factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
+def _factors(slopes: Floats) -> tuple[Array, Array]:
     """Return rows (k, r) and shapes (r, m^2) of the product slopes (k, m^2) up to `_LEFT_OUT`."""
     rows, sizes, shapes = np.linalg.svd(slopes, full_matrices=False)
     left = np.sqrt(np.maximum(1.0 - np.cumsum(sizes**2) / max(np.sum(sizes**2), 1e-300), 0.0))

@@ -10,7 +10,7 @@ from tree_sway.core.run import TableOscillators
 from tree_sway.core.scene import Simulator
 from tree_sway.core.settings import USUAL
 from tree_sway.errors import ParameterError, TreeSwayError
-from tree_sway.stream.check_description import Array
+from tree_sway.stream.check_description import Arrays
 from tree_sway.stream.protocol import encode_description, TABLES
 from tree_sway.stream.scene_kind import SceneKind
 from tree_sway.stream.table_export import exported_table, rounded
@@ -46,7 +46,7 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
     if why_no_tables(kinds) is not None:
         return None
     entries = []
-    arrays = dict[str, Array]()
+    arrays = Arrays()
     for number, kind in enumerate(kinds):
         model = kind.simulator
         bank = model.banks[0].oscillators
@@ -64,8 +64,13 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
         arrays |= {f'{number}/{name}': array for name, array in own.items()}
         entries.append({**numbers, 'drag_law': list(model.models[0].drag_law)})
     arrays['tree_speed'] = simulator.speeds.astype(np.float32)
-    header: dict[str, object] = {'format': 'tree_sway tables', 'description': identity}
-    header |= {'kinds': entries, 'anemometer': None, 'convection_ratio': 1.0}
+    header: dict[str, object] = {
+        'format': 'tree_sway tables',
+        'description': identity,
+        'kinds': entries,
+        'anemometer': None,
+        'convection_ratio': 1.0,
+    }
     gusts = simulator.gusts
     if gusts is not None:
         header['anemometer'] = None if gusts.anemometer is None else gusts.anemometer.tolist()

@@ -76,6 +76,8 @@ _UPSIDE_DOWN = np.diag([1.0, -1.0, -1.0])
 _UPRIGHT = 0.7
 """Cosine of the angle to the vertical below which the z axis of a sensor tells where it faces."""
 _PER_DEGREE = math.pi / 180.0
+Flags = NDArray[np.bool_]
+
 _MEDIAN_OF_SQUARE = 0.4549
 """Median of the square of a normal variable over its variance (chi-squared, one degree)."""
 
@@ -179,8 +181,7 @@ def align(
     """
     raw, sensed = sensed, averaged(sensed, window)
     notes = list[str]()
-    finite = np.isfinite(sensed).all(axis=0).reshape(3, 3)
-    measures: NDArray[np.bool_] = np.all(finite, axis=1)
+    measures: Flags = np.all(np.isfinite(sensed).reshape(-1, 3, 3), axis=(0, 2))
     given, scale = measures.copy(), np.ones(2)
     has_gravity, problem = True, ''
     if measures[0]:
@@ -219,11 +220,10 @@ def align(
             found = replace(tilted, has_gravity=True)
             has_gravity = True
             model = felt
-    scale = found.scale
     likeness, ratio = _likeness(found.motion(sensed), model, measures)
     if not problem and measures[0] and not has_gravity and ratio < 1.0 / 3.0:
         notes.append('acceleration in g, without gravity')
-        scale[0] *= GRAVITY
+        found.scale[0] *= GRAVITY
         likeness, ratio = _likeness(found.motion(sensed), model, measures)
     moved, error = found.motion(raw), _TOLD_ERROR
     noise = noise_of(moved if samples is None else found.motion(samples))
@@ -231,11 +231,13 @@ def align(
         error = _azimuth_error(likeness, count)
     if sway is not None and facing is None and measures[0] and has_gravity:
         turn, error = sway_azimuth(
-            moved[:, :2], with_gravity[:, :2], float(noise[0]) * math.sqrt(held), sway
+            moved[:, :2], with_gravity[:, :2], noise[0] * math.sqrt(held), sway
         )
         found = found.turned(turn)
         likeness, _ = _likeness(found.motion(sensed), model, measures)
-    if not problem and _is_below_noise(model, measures, window):
+    # Any sensor would differ from a model that moves it less than its noise.
+    size = np.sqrt(model.var(axis=0).reshape(3, 3).sum(axis=1))
+    if not problem and (size < LEAST_NOISE / math.sqrt(window))[measures].all():
         problem = TELLS_LITTLE
     if not problem and not 1.0 / _MOST_RATIO < ratio < _MOST_RATIO:
         problem = (
@@ -248,8 +250,8 @@ def align(
             'which way it faces: wait for more wind or tell it, check place and clock'
         )
     return replace(
-        found, has_gravity=has_gravity, likeness=likeness, noise=noise, azimuth_error=error,
-        problem=problem, notes=tuple(notes),
+        found, likeness=likeness, noise=noise, azimuth_error=error, problem=problem,
+        notes=tuple(notes),
     )  # fmt: skip
 
 
@@ -270,14 +272,14 @@ def _is_against(moved: Floats) -> bool:
     """
     change = np.gradient(moved[:, :2], axis=0)
     rate = moved[:, 3:5] - moved[:, 3:5].mean(axis=0)
-    likeness = float((change[:, 1] * rate[:, 0] - change[:, 0] * rate[:, 1]).sum())
-    return likeness < -_AGAINST * float(np.linalg.norm(change) * np.linalg.norm(rate))
+    likeness = (change[:, 1] * rate[:, 0] - change[:, 0] * rate[:, 1]).sum()
+    return likeness < -_AGAINST * (np.linalg.norm(change) * np.linalg.norm(rate))
 
 
 def _mounted(
     sensed: Floats,
     model: Floats,
-    measures: NDArray[np.bool_],
+    measures: Flags,
     scale: Floats,
     reference: Floats | None,
     facing: float | None,
@@ -292,7 +294,9 @@ def _mounted(
     def turned(upright: Floats) -> Floats:
         if facing is None:
             return _azimuth(scaled, model, upright, measures) @ upright
-        return about_up(facing - _faced(upright)) @ upright
+        # The way of its z axis, or of its y axis where that is upright.
+        axis = upright[:, 2] if abs(upright[2, 2]) < _UPRIGHT else upright[:, 1]
+        return about_up(facing - math.atan2(axis[1], axis[0])) @ upright
 
     turns = [np.eye(3)]
     if measures[2] and reference is not None:
@@ -304,15 +308,9 @@ def _mounted(
     elif measures[:2].any():
         turns = [_whole_turn(scaled, model, measures[:2])]
     found = [Alignment(turn, scale, has_gravity, 0.0, np.zeros(3)) for turn in turns]
-    likeness = [_likeness(each.motion(sensed), model, measures)[0] for each in found]
-    best = int(np.argmax(likeness))
-    return replace(found[best], likeness=likeness[best])
-
-
-def _faced(turn: Floats) -> float:
-    """Azimuth to which the z axis of a turned sensor points, or its y axis, in [rad]."""
-    axis = turn[:, 2] if abs(turn[2, 2]) < _UPRIGHT else turn[:, 1]
-    return math.atan2(axis[1], axis[0])
+    alike = [_likeness(each.motion(sensed), model, measures)[0] for each in found]
+    best = np.argmax(alike)
+    return replace(found[best], likeness=alike[best])
 
 
 def averaged(rows: Floats, window: int) -> Floats:
@@ -320,12 +318,12 @@ def averaged(rows: Floats, window: int) -> Floats:
     if window <= 1:
         return rows.copy()
     sums = np.cumsum(np.vstack([np.zeros(rows.shape[1]), rows]), axis=0)
-    return np.asarray((sums[window:] - sums[:-window]) / window)
+    return (sums[window:] - sums[:-window]) / window
 
 
 def _gravity_of(acceleration: Floats, notes: list[str]) -> tuple[float, bool, str]:
     """Factor to [m/s^2], whether gravity is in it, and what is wrong."""
-    steady = float(np.linalg.norm(acceleration.mean(axis=0)))
+    steady = np.linalg.norm(acceleration.mean(axis=0))
     low, high = _GRAVITY_RANGE
     if low < steady / GRAVITY < high:
         return 1.0, True, ''
@@ -352,16 +350,16 @@ def _rate_unit(rate: Floats, model: Floats, notes: list[str]) -> float:
 
 
 def _pairs(
-    moved: Floats, model: Floats, measures: NDArray[np.bool_]
+    moved: Floats, model: Floats, measures: Flags
 ) -> Iterator[tuple[Floats, Floats, float]]:
     """Yield each quantity (n, 3) about its mean, that of the model, and the size of this one."""
     for first in (3 * np.flatnonzero(measures)).tolist():
         own, wanted = (each[:, first : first + 3] for each in (moved, model))
         own, wanted = own - own.mean(axis=0), wanted - wanted.mean(axis=0)
-        yield own, wanted, max(float(np.square(wanted).sum()), 1e-300)
+        yield own, wanted, max(np.square(wanted).sum(), 1e-300)
 
 
-def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: NDArray[np.bool_]) -> Floats:
+def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: Flags) -> Floats:
     """Rotation about the vertical that makes upright motion resemble the model's, (3, 3)."""
     across = along = 0.0
     upright = (sensed.reshape(-1, 3) @ turn.T).reshape(sensed.shape)
@@ -372,28 +370,22 @@ def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: NDArray[np.b
     return about_up(math.atan2(across, along))
 
 
-def _whole_turn(sensed: Floats, model: Floats, measures: NDArray[np.bool_]) -> Floats:
+def _whole_turn(sensed: Floats, model: Floats, measures: Flags) -> Floats:
     """Rotation that makes motion resemble the model's, without gravity, (3, 3)."""
     products = sum(wanted.T @ own / size for own, wanted, size in _pairs(sensed, model, measures))
     left, _, right = np.linalg.svd(products)
     right[2] *= np.linalg.det(left) * np.linalg.det(right)
-    return np.asarray(left @ right)
+    return left @ right
 
 
-def _likeness(moved: Floats, model: Floats, measures: NDArray[np.bool_]) -> tuple[float, float]:
+def _likeness(moved: Floats, model: Floats, measures: Flags) -> tuple[float, float]:
     """Correlation with the model, and the size of the motion over the model's."""
     product = square = 0.0
     for own, wanted, size in _pairs(moved, model, measures):
         product += float((own * wanted).sum()) / size
         square += float(np.square(own).sum()) / size
-    count = float(measures.sum())
+    count = measures.sum()
     return product / max(math.sqrt(square * count), 1e-300), math.sqrt(square / max(count, 1.0))
-
-
-def _is_below_noise(model: Floats, measures: NDArray[np.bool_], window: int) -> bool:
-    """Whether the model moves a sensor less than its noise: any sensor would differ from it."""
-    size = np.sqrt(model.var(axis=0).reshape(3, 3).sum(axis=1))
-    return bool((size < LEAST_NOISE / math.sqrt(window))[measures].all())
 
 
 def noise_of(moved: Floats) -> Floats:
@@ -410,21 +402,20 @@ def noise_of(moved: Floats) -> Floats:
         if np.isfinite(rows).all() and len(rows) > 3:
             squares = np.square(np.diff(rows, 3, axis=0))
             variance = np.median(squares, axis=0) / _MEDIAN_OF_SQUARE
-            found[quantity] = math.sqrt(float(variance.mean()) / 20.0)
+            found[quantity] = math.sqrt(variance.mean() / 20.0)
     return found
 
 
 def turn_onto(start: Floats, end: Floats) -> Floats:
     """Smallest rotation of a direction (3,) onto another, as a matrix (3, 3)."""
-    a = start / max(float(np.linalg.norm(start)), 1e-300)
-    b = end / max(float(np.linalg.norm(end)), 1e-300)
+    a, b = (each / max(float(np.linalg.norm(each)), 1e-300) for each in (start, end))
     cosine = float(a @ b)
     if cosine < -1.0 + 1e-9:
-        aside = np.cross(a, np.eye(3)[int(np.argmin(np.abs(a)))])
+        aside = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
         aside /= np.linalg.norm(aside)
-        return np.asarray(2.0 * np.outer(aside, aside) - np.eye(3))
+        return 2.0 * np.outer(aside, aside) - np.eye(3)
     skew = cross_matrix(np.cross(a, b))
-    return np.asarray(np.eye(3) + skew + skew @ skew / (1.0 + cosine))
+    return np.eye(3) + skew + skew @ skew / (1.0 + cosine)
 
 
 def matrix_of(quaternion: Floats) -> Floats:

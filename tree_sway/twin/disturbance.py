@@ -18,7 +18,7 @@ is within 40 % of it from 0.05 to 2 Hz.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -110,14 +110,14 @@ def disturbance(
     slopes, moved = _branch_slopes(simulator, speed, n_all)
     drag = np.tensordot(slopes, moved, axes=((0, 1), (0, 1)))
     air_damping = np.diag(drag)[:count].copy()
-    limbs = _limbs(simulator, slopes[:, :, :count])
+    limb_slopes, middle, reach = _limbs(simulator, slopes[:, :, :count])
 
-    between = np.linalg.norm(limbs.middle[:, None] - limbs.middle, axis=2)
-    frequency = _LEAN * float(simulator.frequencies(1)[0])
+    between = np.linalg.norm(middle[:, None] - middle, axis=2)
+    frequency = _LEAN * simulator.frequencies(1)[0]
     shared = np.exp(-DECAY * frequency / max(speed, 1.0) * between)
     variance = np.square(GUST * speed)
-    covariance = variance * _forces_by(limbs.slopes, shared, heading)
-    apart = _forces_by(limbs.slopes, np.eye(len(between)), heading)
+    covariance = variance * _forces_by(limb_slopes, shared, heading)
+    apart = _forces_by(limb_slopes, np.eye(len(between)), heading)
     scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
     return Disturbance(
         covariance,
@@ -126,21 +126,17 @@ def disturbance(
         air_damping=air_damping,
         speed=speed,
         drag=drag,
-        limb_slopes=limbs.slopes,
-        reach=limbs.reach,
+        limb_slopes=limb_slopes,
+        reach=reach,
     )
 
 
-class _Limbs(NamedTuple):
-    """Of each limb its slopes, (l, 3, m), the middle of its load [m], (l, 3), and its reach."""
+def _limbs(simulator: SwaySimulator, slopes: Floats) -> tuple[Floats, Floats, Floats]:
+    """
+    Sum what moves branches, with slopes (b, 3, m), over their limbs.
 
-    slopes: Floats
-    middle: Floats
-    reach: Floats
-
-
-def _limbs(simulator: SwaySimulator, slopes: Floats) -> _Limbs:
-    """Sum what moves branches, with slopes (b, 3, m), over their limbs."""
+    Returns the slopes of each limb, (l, 3, m), the middle of its load [m], (l, 3), and its reach.
+    """
     tree, branches = simulator.tree, simulator.banks[0].branches
     branch = tree.branch_of_segment[branches['first']]
     limb = limbs_of(tree.branch_parent)[branch]
@@ -152,27 +148,24 @@ def _limbs(simulator: SwaySimulator, slopes: Floats) -> _Limbs:
     of_crown = load[:, 0] @ middle / load.sum()
     reach = np.linalg.norm(middle - of_crown, axis=1)
     reach[0] = 0.0
-    reach /= max(float(reach.max()), 1e-9)
-    return _Limbs(_summed(slopes, limb, n_limbs), middle, reach)
+    reach /= max(reach.max(), 1e-9)
+    return _summed(slopes, limb, n_limbs), middle, reach
 
 
 def _forces_by(slopes: Floats, correlation: Floats, heading: float | None) -> Floats:
     """Covariance of forces by winds of limbs, slopes (l, 3, m), with a correlation, (l, l)."""
-    found = np.zeros((slopes.shape[2], slopes.shape[2]))
     variances = 1.0, 1.0, _LIFT
     if heading is not None:
         variances = ALONG**2, (ACROSS * _LATERAL) ** 2, _LIFT
         slopes = np.einsum('ij,ljm->lim', about_up(-heading), slopes)
-    for variance, along in zip(variances, slopes.swapaxes(0, 1), strict=True):
-        forces = along.T @ correlation @ along
-        found += variance * forces
-    return found
+    pairs = zip(variances, slopes.swapaxes(0, 1), strict=True)
+    return np.sum([each * (along.T @ correlation @ along) for each, along in pairs], axis=0)
 
 
 def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:
     """Slope of the modal forces by the wind of the whole crown in a mean wind [m/s], (3, m)."""
     slopes, _ = _branch_slopes(simulator, speed, count)
-    return np.asarray(slopes.sum(axis=0))
+    return slopes.sum(axis=0)
 
 
 def part_slopes(simulator: SwaySimulator, speed: float, count: int) -> Floats:

@@ -85,11 +85,10 @@ class DraggedMotion:
         if unknown.forces is None:
             return
         drag = unknown.forces.drag
-        damping = unknown.all_damping + np.diag(drag)
+        own = np.diag(drag)
+        damping = unknown.all_damping + own
         self._law[:] = held_propagator(damping, unknown.all_stiffness, self._dt)
-        by_others = drag.copy()
-        np.fill_diagonal(by_others, 0.0)
-        self._drag[:] = -by_others[:, : len(self._drag)].T
+        self._drag[:] = (np.diag(own) - drag)[:, : len(self._drag)].T
 
     def reset(self) -> None:
         """Return to rest."""

@@ -48,10 +48,11 @@ class ExplainedMotion:
         # Means over all steps until there are more than the time constant.
         share = min(self._since / min(self._passed, _RECENT), 1.0)
         self._since = 0.0
-        away = np.stack([whole, added]) - self._means
+        both = np.stack([whole, added])
+        away = both - self._means
         self._means = self._means + share * away
         # Both factors: the mean has moved towards the value (Welford 1962).
-        energies = away * (np.stack([whole, added]) - self._means) @ stiffness
+        energies = away * (both - self._means) @ stiffness
         self._energies += share * (energies - self._energies)
 
     @property

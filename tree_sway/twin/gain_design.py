@@ -25,7 +25,6 @@ from tree_sway.twin.gust_strength import BeyondModel, strength_of, UsualLaw
 from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.missed_motion import missed_noise
 from tree_sway.twin.pushed_twigs import push_of
-from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
 from tree_sway.twin.steady_filter import steady_filter, SteadyFilter, told_shares
 from tree_sway.twin.unknown_motion import COMPARED, UnknownMotion
@@ -49,6 +48,10 @@ _DUE = 45
 """Steps after which new gains are in use."""
 
 
+_NoiseOf = dict[tuple[int, tuple[int, ...]], Floats]
+"""Noise of the measurements of sensors by their numbers and quantities, (3 k,) each."""
+
+
 class Gains(NamedTuple):
     """
     Gains for some sensors.
@@ -60,7 +63,7 @@ class Gains(NamedTuple):
     """
 
     used: tuple[int, ...]
-    noise_of: dict[tuple[int, tuple[int, ...]], Floats]
+    noise_of: _NoiseOf
     noise: Floats
     filter: SteadyFilter
     trust: Floats
@@ -76,22 +79,17 @@ class GainDesign:
     ----------
     unknown
         Law of the unknown motion.
-    tracks, places
-        Sensors, and how each is moved by the coordinates of the model.
+    tracks
+        Sensors.
 
     """
 
-    def __init__(
-        self,
-        unknown: UnknownMotion,
-        tracks: Sequence[SensorTrack],
-        places: Sequence[PlaceMotion],
-    ) -> None:
-        self._unknown, self._tracks, self._places = unknown, tracks, places
+    def __init__(self, unknown: UnknownMotion, tracks: Sequence[SensorTrack]) -> None:
+        self._unknown, self._tracks = unknown, tracks
         self._wanted: tuple[int, ...] = ()
         self._work: LaterWork[Gains] | None = None
         self._again_after = 0
-        self._noise: dict[tuple[int, tuple[int, ...]], Floats] = {}
+        self._noise: _NoiseOf = {}
         self.used: tuple[int, ...] = ()
         """Sensors for which gains are found, and which are all in use."""
 
@@ -123,24 +121,20 @@ class GainDesign:
     def _begin(self, used: tuple[int, ...]) -> LaterWork[Gains]:
         """Begin to find the gains of some sensors."""
         unknown = self._unknown
-        law, apart, forces = unknown.find(), unknown.apart, unknown.forces
-        assert apart is not None
+        (law, apart), forces = unknown.find(), unknown.forces
         assert forces is not None
-        found = [self.felt(k) for k in used]
-        sensed = np.concatenate([rows for rows, _ in found])
         count = round(COMPARED / unknown.dt)
         self._again_after = round(min(_LATER * self._n_seen(used), self._n_seen(used) + count))
-        keys = [(k, self._tracks[k].uses) for k in used]
-        records = [self._tracks[k].beyond(count) for k in used]
         n_tried = round(_TRIED / unknown.dt)
-        tried = [
-            (rows, least, self._noise.get(key, least), record[-n_tried:])
-            for key, (rows, least), record in zip(keys, found, records, strict=True)
-        ]
-        beyond = [
-            BeyondModel(motion[:, :2], rows[:2].reshape(2, 3, -1), float(each[0]))
-            for motion, (rows, each) in zip(records, found, strict=True)
-        ]
+        tried = {}
+        beyond = []
+        for k in used:
+            track, (rows, least) = self._tracks[k], self.felt(k)
+            record, key = track.beyond(count), (k, track.uses)
+            tried[key] = rows, least, self._noise.get(key, least), record[-n_tried:]
+            by_part = rows[:2].reshape(2, 3, -1)
+            beyond.append(BeyondModel(record[:, :2], by_part, least[0]))
+        sensed = np.concatenate([rows for rows, *_ in tried.values()])
         usual = UsualLaw(
             unknown.stiffness.copy(),
             unknown.damped,
@@ -154,14 +148,12 @@ class GainDesign:
         damping_ratio = 0.5 * (unknown.all_damping + np.diag(forces.drag)) / np.sqrt(stiffness)
         streaming = np.clip((damping_ratio - _SWAYS) / (_STREAMS - _SWAYS), 0.0, 1.0)
         leaning = 1.0 - streaming[: unknown.count]
-        moved = np.concatenate([self._places[k].displacement[:2] for k in used])
+        moved = np.concatenate([self._tracks[k].motion.displacement[:2] for k in used])
 
         def found_later() -> Gains:
             strength = strength_of(beyond, usual)
             own, others = (replace(each, driven=strength * each.driven) for each in (law, apart))
-            noise_of = {
-                key: missed_noise(own, *each) for key, each in zip(keys, tried, strict=True)
-            }
+            noise_of = {key: missed_noise(own, *each) for key, each in tried.items()}
             noise = np.concatenate([*noise_of.values()])
             gains = steady_filter(own, sensed, noise)
             told = told_shares(gains, others, noise)
@@ -178,7 +170,7 @@ class GainDesign:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
         track, unknown = self._tracks[which], self._unknown
         assert track.alignment is not None
-        first = self._places[which].first(unknown.count)
+        first = track.motion.first(unknown.count)
         rows = sensed_rows(first, unknown.stiffness, unknown.damped)
         felt = as_felt(rows, has_gravity=track.alignment.has_gravity).reshape(3, 3, -1)
         uses = list(track.uses)

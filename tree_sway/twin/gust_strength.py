@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.twin.waves import power_of, way_in
 
 _BANDS = ((0.03, 0.25), (0.5, 2.2))
 """Slow and fast sway, frequencies over the first one of the tree [-]."""
@@ -24,8 +25,8 @@ _BANDS = ((0.03, 0.25), (0.5, 2.2))
 _LEAST = 0.02
 """Least power measured in a band over that expected; more than expected is taken for that [-]."""
 
-_TAPERED, _LINES = 0.1, 40
-"""Share of a record at its ends that is tapered, and lines of a band whose power is computed."""
+_LINES = 40
+"""Lines of a band whose power is computed."""
 
 
 class BeyondModel(NamedTuple):
@@ -81,12 +82,11 @@ def _powers(sensor: BeyondModel, law: UsualLaw, low: float, high: float) -> tupl
     first, last = np.searchsorted(hertz, [low * law.frequency, high * law.frequency]).tolist()
     if first == last:
         return 0.0, 0.0
-    edge = np.minimum((np.arange(count) + 0.5) / (_TAPERED * count), 1.0)
-    window = np.sin(0.5 * np.pi * np.minimum(edge, edge[::-1]))[:, None]
+    window = np.sin(0.5 * np.pi * way_in(count))[:, None]
     waves = np.fft.rfft(window * (sensor.motion - sensor.motion.mean(axis=0)), axis=0)
-    size = float(np.square(window).sum())
+    size = np.square(window).sum()
     noise = 2.0 * size * sensor.noise**2
-    measured = float((np.square(np.abs(waves[first:last])).sum(axis=1) - noise).sum())
+    measured = (power_of(waves[first:last]).sum(axis=1) - noise).sum()
 
     lines = np.arange(first, last, max((last - first) // _LINES, 1))
     w = 2.0 * np.pi * hertz[lines][:, None]
@@ -96,4 +96,4 @@ def _powers(sensor: BeyondModel, law: UsualLaw, low: float, high: float) -> tupl
     power = (moved @ law.covariance * moved.conj()).real.sum(axis=(0, 2))
     time = law.time_constant
     gusts = 2.0 * time / (1.0 + np.square(w[:, 0] * time))
-    return measured, (last - first) / len(lines) * size / law.dt * float(power @ gusts)
+    return measured, (last - first) / len(lines) * size / law.dt * (power @ gusts)

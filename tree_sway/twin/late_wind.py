@@ -88,7 +88,7 @@ class LateWind:
         speed = max(float(self._mean[0]), _SLOWEST)
         if way[1] > 0.0:
             way[0] = self._delay[0] * speed
-            way[1] = 1.0 if self._mean[2] < _AVERAGED else 0.0
+            way[1] = self._mean[2] < _AVERAGED
         self._wanted[0] = way[0] / speed
         self._measured[:] = x, y, z
         self._history.add(self._measured, dt, self._wanted, self._delay, self._wind)

@@ -79,8 +79,7 @@ class Uncertainty(NamedTuple):
 
 def uncertainty_of(*, in_leaf: bool) -> Uncertainty:
     """Return the spreads for a tree without measurements."""
-    leaf = LEAVES if in_leaf else 0.0
-    return Uncertainty(drag=math.hypot(DRAG, leaf))
+    return Uncertainty(drag=math.hypot(DRAG, LEAVES * in_leaf))
 
 
 def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> Floats:
@@ -100,21 +99,13 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
     uncorrelated = np.linalg.solve(root, drawn)
     order = uncorrelated.argsort(axis=1)
     ranks = order.argsort(axis=1)
-    return np.asarray(strata[ranks])
+    return strata[ranks]
 
 
 def most_of(found: Floats) -> Floats:
     """Find the bounds of the middle 80 %, (2, ...), of a value of each member, (..., e)."""
-    ordered = np.sort(found, axis=-1)
     beyond = 0.5 * (1.0 - SHARE_WITHIN)
-    rank = beyond * (_N_MEMBERS + 1) - 1.0
-    low = int(rank)
-    high = -low - 1
-    share = rank - low
-    rest = 1.0 - share
-    from_below = rest * ordered[..., low] + share * ordered[..., low + 1]
-    from_above = rest * ordered[..., high] + share * ordered[..., high - 1]
-    return np.stack([from_below, from_above])
+    return np.quantile(found, [beyond, 1.0 - beyond], axis=-1, method='weibull')
 
 
 class Members:
@@ -211,17 +202,12 @@ class Members:
 
     def _fill_anew(self) -> None:
         """Find the law of the members again where wind, model or spreads have changed."""
-        forces = self._present_forces()
+        unknown = self._observer.unknown
+        forces = unknown.present_forces(keeps_old=self._observer.is_active)
         now = forces, self._observer.stiffness, self.spreads
-        is_same = [one is other for one, other in zip(now, self._filled_for, strict=True)]
-        if not all(is_same):
+        if any(one is not other for one, other in zip(now, self._filled_for, strict=True)):
             self._fill(forces)
             self._filled_for = now
-
-    def _present_forces(self) -> Disturbance:
-        """Return what the wind does not tell, in the present wind."""
-        unknown = self._observer.unknown
-        return unknown.present_forces(keeps_old=self._observer.is_active)
 
     def _fill(self, forces: Disturbance) -> None:
         """Find propagator, drag and gusts of each member for the present wind and spreads."""
@@ -271,10 +257,9 @@ class Members:
 
     def _blow(self, wind: Floats) -> None:
         """Step the forces of the gusts that an anemometer averages away, in a wind [m/s], (2,)."""
-        nearer = (1.0 - self._decay) * (wind - self._slow)
-        self._slow = self._slow + nearer
+        self._slow += (1.0 - self._decay) * (wind - self._slow)
         beyond = wind - self._slow
-        variance = 0.5 * float(np.square(beyond).sum())
+        variance = 0.5 * np.square(beyond).sum()
         share = max(self._dt / _AVERAGED, 1.0 / self._steps)
         self._fast += share * (variance - self._fast)
         self._gust *= self._decay
@@ -288,21 +273,20 @@ class Members:
 
     def _late_gusts(self, apart: Floats) -> Floats:
         """Find forces of gusts that reach the limbs after the delays of each member, (n, e)."""
-        speed = math.hypot(*self._slow)
-        ahead = self._slow / max(speed, 1e-9)
+        ahead = self._slow / max(math.hypot(*self._slow), 1e-9)
         along = apart[:, :2] @ ahead
         winds = ACROSS * apart
         winds[:, :2] += (ALONG - ACROSS) * np.outer(along, ahead)
         by_axis = winds.T.ravel()
         found = self._per_delay @ by_axis
-        return np.asarray(found.reshape(self._count, _N_MEMBERS))
+        return found.reshape(self._count, _N_MEMBERS)
 
     def _far_gusts(self, wind: FarWind) -> Floats:
         """Find forces of what is drawn beside the expected wind, a stretch for each, (n, e)."""
         winds = wind.others(self._offsets, ALONG, ACROSS)
         by_member = winds.reshape(_N_MEMBERS, -1)
         found = self._per_part @ by_member.T
-        return np.asarray(found * self._drag)
+        return found * self._drag
 
     def _filter(self, eta: Floats, rate: Floats, force: Floats) -> None:
         """Correct the estimate of each member by the simulated measurement of its motion."""
@@ -346,31 +330,15 @@ class Members:
         self._bias += share * (told - self._bias)
         drawn = self._rng.standard_normal(told.shape)
         noise = self._observer.noise[:, None] * drawn
-        return np.asarray(told - self._bias + noise)
-
-    def band(self, readout: Floats, scale: Floats | None = None) -> Floats:
-        """
-        Find the interval of the middle 80 % of the members.
-
-        Parameters
-        ----------
-        readout
-            Value per unit of each coordinate, (..., m).
-        scale
-            Further differences of the members to add, (..., e).
-
-        Returns
-        -------
-        Floats
-            Lower and upper bound, less the corrected motion, (2, ...).
-
-        """
-        found = self.differences(readout)
-        return most_of(found if scale is None else found + scale)
+        return told - self._bias + noise
 
     def differences(self, readout: Floats) -> Floats:
-        """Find a value of each member less the corrected motion, (..., e); `readout` as above."""
-        return np.asarray(readout[..., : self._count] @ self.errors)
+        """
+        Find a value of each member less that of the corrected motion, (..., e).
+
+        The readout is the value per unit of each coordinate, (..., m).
+        """
+        return readout[..., : self._count] @ self.errors
 
     def reset(self) -> None:
         """Begin anew from the motion of the model."""

@@ -12,6 +12,7 @@ its numbers (`sample_ring`).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import compress
 from math import inf, nan
 
 import numpy as np
@@ -107,7 +108,7 @@ class MotionSensor:
         """Why its newest sample was refused, and what to do; empty if it was not."""
         self.stated_noise = (0.0, 0.0, 0.0)
         """Noise that its maker states: acceleration, rate, rotation; 0 where it does not."""
-        self._sample, self._sent = np.full(9, nan), (False, False, False)
+        self._sample = np.full(9, nan)
         self.ring = SampleRing(self._sample)
         """Its last samples."""
         self.reference: Floats | None = None
@@ -116,8 +117,7 @@ class MotionSensor:
         self._unit = np.zeros(4)
         self._began = -inf
         # Least and most time from stamp to arrival, in this window and in the one before.
-        self._soonest, self._latest = -inf, inf
-        self._soonest_before, self._latest_before = -inf, inf
+        self._late = self._late_before = -inf, inf
 
     @property
     def lateness(self) -> float:
@@ -126,10 +126,8 @@ class MotionSensor:
 
         It is negative where all came before their stamps; 0 before it is known.
         """
-        latest = max(self._latest, self._latest_before)
-        if latest < 0.0:
-            return latest
-        return max(min(self._soonest, self._soonest_before), 0.0)
+        least, most = zip(self._late, self._late_before, strict=True)
+        return max(most) if max(most) < 0.0 else max(min(least), 0.0)
 
     @property
     def is_behind(self) -> bool:
@@ -173,8 +171,6 @@ class MotionSensor:
         values[:] = nan
         if self.place.is_strain:
             acceleration = rate = None  # gauges measure neither
-        # An orientation of zeros is not measured.
-        self._sent = acceleration is not None, rate is not None, False
         try:
             if acceleration is not None:
                 values[0:3] = acceleration
@@ -191,7 +187,8 @@ class MotionSensor:
             else:
                 outcome = self.ring.keep(stamp)
                 if outcome == 'others':
-                    self._begin()
+                    # An orientation of zeros is not measured.
+                    self._begin((acceleration is not None, rate is not None))
                     outcome = self.ring.keep(stamp)
         except (TypeError, ValueError, OverflowError):
             outcome = 'not_finite'
@@ -207,27 +204,20 @@ class MotionSensor:
     def _is_ahead(self, late: float, arrival: float) -> bool:
         """Note how late a sample comes in [s]; whether all of the last seconds came too soon."""
         if not 0.0 <= arrival - self._began < _WINDOW:
-            self._began = arrival
-            self._soonest_before, self._latest_before = self._soonest, self._latest
-            self._soonest, self._latest = inf, -inf
-        self._soonest = min(self._soonest, late)
-        self._latest = max(self._latest, late)
-        return self._latest < -_AHEAD and self._latest_before < -_AHEAD
+            self._began, self._late_before, self._late = arrival, self._late, (inf, -inf)
+        least, most = self._late
+        self._late = min(least, late), max(most, late)
+        return max(self._late[1], self._late_before[1]) < -_AHEAD
 
-    def _begin(self) -> None:
-        """Begin anew with the quantities of the sample that is offered."""
+    def _begin(self, is_sent: tuple[bool, bool]) -> None:
+        """Begin anew with the quantities of the sample that is offered, of those that are sent."""
         is_given = np.isfinite(self._sample.reshape(3, 3)).all(axis=1).tolist()
-        before, pairs = self.quantities, zip(_QUANTITIES, is_given, strict=True)
-        self.quantities = tuple([name for name, is_there in pairs if is_there])
+        before, self.quantities = self.quantities, tuple(compress(_QUANTITIES, is_given))
         if self.counts.accepted > _MANY:
             self.lost = tuple([name for name in before if name not in self.quantities])
-        self.unusable = tuple(
-            [
-                name
-                for name, is_sent in zip(_QUANTITIES, self._sent, strict=True)
-                if is_sent and name not in (*self.quantities, *self.lost)
-            ]
-        )
+        known = *self.quantities, *self.lost
+        sent = compress(_QUANTITIES, is_sent)
+        self.unusable = tuple([name for name in sent if name not in known])
         self.ring.ask_for(is_given)
         if is_given[2]:
             self.reference = None
@@ -246,4 +236,4 @@ class MotionSensor:
         if self.reference is None:
             self.reference = unit
             self._first_turn = matrix_of(unit)
-        return np.asarray(turn_between(self.reference, unit) @ self._first_turn)
+        return turn_between(self.reference, unit) @ self._first_turn

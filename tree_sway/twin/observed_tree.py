@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain
 import math
 from typing import Any, TYPE_CHECKING
@@ -153,21 +154,18 @@ class ObservedTree(SwaySimulator):
         self._as_made = self.check_tuning()
         self._tuned: tuple[Tuning, ...] = ()
         tunable = self._bank.oscillators.tunable
-        slowest = int(np.argmin(tunable.stiffness / tunable.inertia))
+        slowest = np.argmin(tunable.stiffness / tunable.inertia)
         weight = float(tunable.weight[slowest])
         self._slowest = float(tunable.stiffness[slowest]) - weight, weight
-        self.sensors: dict[str, MotionSensor] = {}
-        """Sensors by their names."""
         self._records: dict[str, _Record] = {}
         distance = within('upwind', upwind, 0.0, 1000.0, 'm')
         is_told = chosen.is_far and chosen.anemometer_bearing is not None
-        self._far_crown: FarCrown | None = None
-        if chosen.is_far:
-            self._far_crown = FarCrown(self.models[0], self._bank, None, chosen)
+        far = FarCrown(self.models[0], self._bank, None, chosen) if chosen.is_far else None
+        self._far_crown = far
         self.late_wind = LateWind(
             0.0 if self._places else distance,
             is_told=is_told,
-            far=None if self._far_crown is None else self._far_crown.wind,
+            far=None if far is None else far.wind,
         )
         """The wind on its way from the anemometer."""
         self.set_rate(rate)
@@ -178,17 +176,18 @@ class ObservedTree(SwaySimulator):
         self._apart, self._whole = np.zeros((N_DELAYS, 3)), np.zeros(3)
         oscillators: Any = self._bank.oscillators
         self._swing: tuple[Floats, ...] = tuple(oscillators.swing)
-        n = self.observer.count
-        self._corrected = self._swing[0][:n], self._swing[1][:n]
+        self._corrected = self._swing[0][: self.observer.count]
         self._added = np.zeros((2, len(self._swing[0])))
-        self._limit = self._storm_energy()
+        load = _STORM * crown_slope(self, _STORM, self.observer.count)
+        bent = (np.square(load).sum(axis=0) / self.observer.stiffness).sum()
+        # Energy that no correction exceeds, per unit mass of the coordinates.
+        self._limit = _DYNAMIC * float(bent)
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
         self._held_wind = (0.0, 0.0, 0.0)
         self._learned = np.zeros(2)
         self._followed = 0.0
-        self._tips: Floats | None = None
         self.learned_before: LearnedTree | None = getattr(tree, 'learned', None)
         """What sensors told in earlier runs, in the species already; None without."""
         if chosen.is_far and not at:  # sensors tell the wood
@@ -216,31 +215,26 @@ class ObservedTree(SwaySimulator):
         self._rate = rate
         frequency = float(self.frequencies(1)[0])
         self.sensors = {name: MotionSensor(name, place) for name, place in self._places.items()}
+        """Sensors by their names."""
+        dt = self.period
         tracks = [
-            SensorTrack(each, frequency, 1.0 / rate, reach_of(self.tree, each.place))
+            SensorTrack(each, frequency, dt, reach_of(self.tree, each.place))
             for each in self.sensors.values()
         ]
-        self.observer: Observer = Observer(
-            self, tracks, 1.0 / rate, before=before, wind=self.late_wind
-        )
+        self.observer: Observer = Observer(self, tracks, dt, before=before, wind=self.late_wind)
         """What the sensors tell."""
-        self._dragged = DraggedMotion(self.observer, 1.0 / rate)
+        self._dragged = DraggedMotion(self.observer, dt)
         self.members: Members | None = None
         """Trees that the real one might be; None without a band."""
         if self._has_band:
             spreads = uncertainty_of(in_leaf=bool(self.settings.in_leaf))
             far = None if self._far_crown is None else (self._far_crown.wind, self)
-            self.members = Members(self.observer, 1.0 / rate, spreads, far)
+            self.members = Members(self.observer, dt, spreads, far)
 
     @property
     def period(self) -> float:
         """Time step in [s] of the sensors' gains."""
         return 1.0 / self._rate
-
-    def _storm_energy(self) -> float:
-        """Energy that no correction exceeds, per unit mass of the coordinates."""
-        load = _STORM * crown_slope(self, _STORM, self.observer.count)
-        return _DYNAMIC * float((np.square(load).sum(axis=0) / self.observer.stiffness).sum())
 
     def offer(
         self,
@@ -261,7 +255,7 @@ class ObservedTree(SwaySimulator):
             acceleration=acceleration,
             rate=rate,
             orientation=orientation,
-            arrival=self.now + 1.0 / self._rate,  # the step that is next
+            arrival=self.now + self.period,  # the step that is next
         )
 
     def replay(
@@ -346,7 +340,7 @@ class ObservedTree(SwaySimulator):
         eta += added[0]
         rate += added[1]
         if self.observer.is_active:
-            self._explained.note(dt, self.observer.stiffness, self._corrected[0], correction[0])
+            self._explained.note(dt, self.observer.stiffness, self._corrected, correction[0])
         self._followed += dt
         if self._followed >= _FOLLOWED_EVERY:
             self._followed = 0.0
@@ -407,9 +401,10 @@ class ObservedTree(SwaySimulator):
         energy, own = self.observer.energies.tolist()
         if energy <= self._limit:
             return
-        self.observer.limit(self._limit / max(energy, 1e-300))
+        share = self._limit / energy
+        self.observer.limit(share)
         # The wind alone may move it so far; sensors do not add to that.
-        correction *= math.sqrt(self._limit / energy) if own < self._limit else 0.0
+        correction *= math.sqrt(share) if own < self._limit else 0.0
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
@@ -467,8 +462,8 @@ class ObservedTree(SwaySimulator):
             A tree made without a band.
 
         """
-        tips = self._slopes_of_tips()
-        return self._members_with_band().band(tips if branches is None else tips[list(branches)])
+        chosen = self._tips if branches is None else self._tips[list(branches)]
+        return most_of(self._members_with_band().differences(chosen))
 
     def sway_band(self) -> Floats:
         """
@@ -486,15 +481,15 @@ class ObservedTree(SwaySimulator):
 
         """
         members = self._members_with_band()
-        slopes = self._slopes_of_tips()[self.tree.branch_of_segment[self._highest]]
-        moved = slopes[:, : self.observer.count] @ self._corrected[0]
+        slopes = self._tips[self.tree.branch_of_segment[self._highest]]
+        moved = slopes[:, : self.observer.count] @ self._corrected
         others = np.linalg.norm(moved[:, None] + members.differences(slopes), axis=0)
         return most_of(others - np.linalg.norm(moved))
 
-    def _slopes_of_tips(self) -> Floats:
-        if self._tips is None:
-            self._tips = tip_slopes(self)
-        return self._tips
+    @cached_property
+    def _tips(self) -> Floats:
+        """Way of the tip of each branch per unit of each coordinate, (b, 3, m)."""
+        return tip_slopes(self)
 
     def load_band(self, per_rotation: Floats) -> Floats:
         """
@@ -515,8 +510,8 @@ class ObservedTree(SwaySimulator):
         shapes = self._bank.oscillators.shapes[: len(per_rotation), : self.observer.count]
         readout = np.tensordot(per_rotation, shapes, axes=(0, 0))
         # Stiffer wood bears more at the same bend.
-        bent = readout @ (self._corrected[0][:, None] + members.errors)
-        return members.band(readout, (members.stiffness - 1.0) * bent)
+        bent = readout @ (self._corrected[:, None] + members.errors)
+        return most_of(members.differences(readout) + (members.stiffness - 1.0) * bent)
 
     def _members_with_band(self) -> Members:
         if self.members is None:

@@ -85,19 +85,19 @@ class Observer:
         self._wind = wind = wind or LateWind()
         n = self.count = min(MOST_COORDINATES, oscillators.shapes.shape[1])
         """Number of coordinates that are corrected."""
-        places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
-        frequency = float(simulator.frequencies(1)[0])
+        for track in self.tracks:
+            track.motion = place_motion(simulator, track.sensor.place)
         with one_thread():
             self.unknown = UnknownMotion(simulator, n, dt)
             """Stiffness and damping of the model, and what the wind does not tell."""
-            self._readings = SensorReadings(self.unknown, self.tracks, places, dt, swing, wind)
+            self._readings = SensorReadings(self.unknown, self.tracks, swing, wind)
             load = crown_slope(simulator, _USUAL_WIND, oscillators.shapes.shape[1])[:2]
-            for track, place in zip(self.tracks, places, strict=True):
-                track.bend = lean_per_load(place, self.unknown.all_stiffness, load)
-        self._fit = RunningFit(self.unknown, self.tracks, places, frequency, dt, wind)
+            for track in self.tracks:
+                track.bend = lean_per_load(track.motion, self.unknown.all_stiffness, load)
+        self._fit = RunningFit(self.unknown, self.tracks, wind)
         if before is not None:
             self._fit.follow(before._fit)
-        self._design = GainDesign(self.unknown, self.tracks, places)
+        self._design = GainDesign(self.unknown, self.tracks)
         self._step, self._done = -1, -1
         self._estimate: Estimate | None = None
         self.trust = np.zeros(n)

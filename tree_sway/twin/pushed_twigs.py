@@ -37,4 +37,4 @@ def push_of(moved: Floats, stiffness: Floats, trust: Floats, share: Floats) -> F
     if not least:
         return np.zeros((len(trust), len(stiffness)))
     forces = np.linalg.solve(told + least * np.eye(len(told)), leant)
-    return np.asarray(forces.T @ moved * share)
+    return forces.T @ moved * share

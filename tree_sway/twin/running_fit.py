@@ -16,7 +16,6 @@ import numpy as np
 
 from tree_sway.twin.late_wind import LateWind
 from tree_sway.twin.later_work import LaterWork
-from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_spectrum import SensorSpectrum
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
 from tree_sway.twin.sway_watch import SwayWatch
@@ -44,12 +43,8 @@ class RunningFit:
     ----------
     unknown
         Law of the unknown motion; its model is the one that fits are relative to.
-    tracks, places
-        Sensors, and how each is moved by the coordinates of the model.
-    frequency
-        First frequency of the model in [Hz].
-    dt
-        Time step in [s].
+    tracks
+        Sensors.
     wind
         Wind of the tree, which may be known late; None for one that is not.
 
@@ -59,15 +54,11 @@ class RunningFit:
         self,
         unknown: UnknownMotion,
         tracks: Sequence[SensorTrack],
-        places: Sequence[PlaceMotion],
-        frequency: float,
-        dt: float,
         wind: LateWind | None = None,
     ) -> None:
         self._unknown, self._tracks, self._wind = unknown, tracks, wind or LateWind()
         n = unknown.count
-        self._places = [each.first(n) for each in places]
-        self._frequency, self._dt = frequency, dt
+        frequency, dt = unknown.frequency, unknown.dt
         self._spectra = [SensorSpectrum(frequency, dt, n) for _ in tracks]
         self.watches = [SwayWatch(each, frequency) for each in self._spectra]
         """Whether the tree still sways as it did, by each sensor."""
@@ -101,10 +92,7 @@ class RunningFit:
                 if self._spectra[k].count != self._noted[k]:
                     self._spectra[k].note_noise(track.fitted_noise, track.watched_noise)
                     self._note_air(k)
-                watch = self.watches[k]
-                if watch.is_due:
-                    winds = self._east, self._north, self._n_winds
-                    watch.advance(winds)
+                self.watches[k].advance((self._east, self._north, self._n_winds))
             elif track.is_silent:
                 self._spectra[k].skip()
 
@@ -136,10 +124,11 @@ class RunningFit:
         self._noted[which], self._powers[which] = 0, 0.0
         first, second = 3 * track.fitted, 3 * track.uses[0]
         n = len(self._stiffness)
-        spectrum = SensorSpectrum(self._frequency, self._dt, n, first, second)
+        frequency = self._unknown.frequency
+        spectrum = SensorSpectrum(frequency, self._unknown.dt, n, first, second)
         self._spectra[which] = spectrum
         track.native.series = spectrum.native.at
-        self.watches[which] = SwayWatch(spectrum, self._frequency)
+        self.watches[which] = SwayWatch(spectrum, frequency)
 
     def advance(self, used: Sequence[int]) -> None:
         """Go on with a fit, or begin one by the sensors in use once there is enough motion."""
@@ -150,9 +139,6 @@ class RunningFit:
                 self.found, known = found
                 if self._is_kept:
                     self._known = known.later()
-            return
-        longest = max([each.seconds for each in self._spectra])
-        if longest < self._fit_after:
             return
         measured = [k for k in used if self._spectra[k].new_stretches]
         seconds = max((self._spectra[k].seconds for k in measured), default=0.0)
@@ -184,7 +170,8 @@ class RunningFit:
         """Spectrum of a sensor, and its rows by the model as it was made."""
         track, measured = self._tracks[which], self._spectra[which]
         has_gravity = track.alignment is None or track.alignment.has_gravity
-        rows = sensed_rows(self._places[which], self._stiffness, self._damping)
+        motion = track.motion.first(len(self._stiffness))
+        rows = sensed_rows(motion, self._stiffness, self._damping)
         felt = as_felt(rows, has_gravity=has_gravity)
         products = measured.products.copy()
         # Of forces with motion: they would have come sooner, had their wind been known.

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats
 from tree_sway.core.native import address, LIBRARY
 from tree_sway.twin.alignment import LEAST_NOISE
 
@@ -103,16 +103,12 @@ class SampleRing:
 
     def newest_samples(self) -> Floats:
         """Copy the samples that came last, also those that were read, the oldest first, (n, 9)."""
-        return np.array(self.memory['values'][0, self._newest_rows()])
-
-    def _newest_rows(self) -> Ints:
-        """Return the rows of the samples that came last."""
-        end = int(self._first[0] + self._count[0])
+        end = self._first[0] + self._count[0]
         rows = np.arange(end - _NEWEST, end) % CAPACITY
         rows = rows[np.isfinite(self._times[rows])]
         # Times rise, but where the clock was set back.
         falls = np.flatnonzero(np.diff(self._times[rows]) <= 0.0)
-        return rows[falls[-1] + 1 :] if len(falls) else rows
+        return np.array(self.memory['values'][0, rows[falls[-1] + 1 :] if len(falls) else rows])
 
     def ask_for(self, is_given: Sequence[bool]) -> None:
         """Forget all samples, and ask for some of the three quantities; the clock stays."""

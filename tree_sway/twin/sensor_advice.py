@@ -67,7 +67,7 @@ def advised_places(simulator: SwaySimulator, count: int, speed: float = 7.0) -> 
     with one_thread():
         unknown = UnknownMotion(simulator, n, _DT)
         unknown.note_wind(0.0, 0.0, speed)  # from anywhere
-        law = unknown.find()
+        law, _ = unknown.find()
         slopes = tip_slopes(simulator)[:, :, :n].reshape(-1, n)
         weight = slopes.T @ slopes
         alone = float((weight * stationary_covariance(law)[:n, :n]).sum())

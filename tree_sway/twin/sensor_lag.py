@@ -35,6 +35,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Complexes, Floats
+from tree_sway.twin.waves import power_of, way_in
 
 _SLOW = 0.25
 """Fastest frequency that is compared, over the first one of the tree [-]."""
@@ -92,7 +93,6 @@ _FEWEST, _MANY = 32, 48
 _WIDTH, _LEAST_WIDTH = 0.6, 4.5
 """Lines to either side that are averaged to a spectrum, over their number [-], and at least."""
 
-_TAPERED = 0.1
 _PASSES = 2
 
 
@@ -209,17 +209,16 @@ def sensor_lag(
     slow = slow[slow < count // 2]
     if 2 * len(slow) < _FEWEST:
         return SensorLag()
-    lines = [_lines(rows, block) for rows in (sensed, model)]
     # Bins of both signs: the last ones of a transform are those below 0.
     bins = np.concatenate([slow, -slow])
     hertz = bins / period
-    y, x = (each[bins] for each in lines)
+    y, x = (_lines(rows, block)[bins] for rows in (sensed, model))
     shared = np.ones(len(slow), dtype=np.complex128)
     if later is not None:
         shared = later(hertz[: len(slow)])
         x = x * np.exp(1j * np.angle(np.concatenate([shared, shared.conj()])))
     # By the law of gusts: power that both share over that which they do not, at each f > 0.
-    power = np.minimum(np.square(np.abs(shared)), 1.0 - 1e-9)
+    power = np.minimum(power_of(shared), 1.0 - 1e-9)
     common = power / (1.0 - power)
     circular = 2.0 * np.pi * hertz[: len(slow)]
     least_error = max(float(2.0 * common @ np.square(circular)), 1e-300) ** -0.5
@@ -227,26 +226,29 @@ def sensor_lag(
     lags = _STEP * np.arange(-most, most + 1)
     back = np.exp(-2j * np.pi * hertz * (about + lags[:, None]))
     share = _near(np.abs(bins))
-    noise = share @ np.square(np.abs(y))
-    found = [_likelihood(y, x * np.exp(-a * np.abs(hertz)) * back, noise) for a in _LOSSES]
-    told = x * np.exp(-_LOSSES[int(np.argmax([each.max() for each in found]))] * np.abs(hertz))
-    likelihood = _over_noise(y, told * back, share)
-    at = int(np.argmax(likelihood))
+    noise = share @ power_of(y)
+
+    def told(loss: float) -> Complexes:
+        return x * np.exp(-loss * np.abs(hertz)) * back
+
+    loss = max(_LOSSES, key=lambda each: _likelihood(y, told(each), noise))
+    likelihood = _over_noise(y, told(loss), share)
+    at = np.argmax(likelihood)
     near = lags[likelihood > likelihood[at] - 0.5]
     own = likelihood[np.abs(lags) <= _NONE + none].max()
     for_own = np.inf
     if left_for is not None and abs(left_for) > _NONE + none:
         for_own = own - likelihood[np.argmin(np.abs(lags - left_for))]
     return SensorLag(
-        float(lags[at]),
-        max(float(0.5 * (near[-1] - near[0]) + _STEP), least_error),
-        float(likelihood[at]),
-        float(likelihood[at] - own),
+        lags[at],
+        max(0.5 * (near[-1] - near[0]) + _STEP, least_error),
+        likelihood[at],
+        likelihood[at] - own,
         period,
         len(bins),
-        float(for_own),
-        float(2.0 * common @ (1.0 - np.cos(circular * float(lags[at])))),
-        float(2.0 * np.log1p(common).sum()),
+        for_own,
+        2.0 * common @ (1.0 - np.cos(circular * lags[at])),
+        2.0 * np.log1p(common).sum(),
     )
 
 
@@ -255,33 +257,32 @@ def _lines(rows: Floats, block: int) -> Complexes:
     count = len(rows) // block
     averages = rows[: count * block].reshape(count, block, 2).mean(axis=1)
     both = averages[:, 0] + 1j * averages[:, 1]
-    fade = np.minimum((np.arange(count) + 0.5) / (_TAPERED * count), 1.0)
-    fade = 0.5 - 0.5 * np.cos(np.pi * np.minimum(fade, fade[::-1]))
-    return np.asarray(np.fft.fft((both - both.mean()) * fade))
+    fade = 0.5 - 0.5 * np.cos(np.pi * way_in(count))
+    return np.fft.fft((both - both.mean()) * fade)
 
 
 def _near(bins: Floats) -> Floats:
     """Weights of the lines whose mean is the spectrum about each line, (f, f)."""
     width = np.maximum(_LEAST_WIDTH, _WIDTH * bins)
     near = (np.abs(bins[:, None] - bins) <= width[:, None]).astype(float)
-    return np.asarray(near / near.sum(axis=1, keepdims=True))
+    return near / near.sum(axis=1, keepdims=True)
 
 
-def _likelihood(y: Complexes, told: Complexes, noise: Floats) -> Floats:
-    """Logarithm of the likelihood of what is told at each lag, (l, f), in a known noise, (l,)."""
+def _likelihood(y: Complexes, told: Complexes, noise: Floats) -> float:
+    """Largest logarithm of the likelihood of what is told at a lag, (l, f), in a known noise."""
     shared = (y * told.conj() / noise).sum(axis=1)
-    size = (np.square(np.abs(told)) / noise).sum(axis=1)
-    return np.asarray(np.square(np.abs(shared)) / np.maximum(size, 1e-300))
+    size = (power_of(told) / noise).sum(axis=1)
+    return float((power_of(shared) / np.maximum(size, 1e-300)).max())
 
 
 def _over_noise(y: Complexes, told: Complexes, share: Floats) -> Floats:
     """Logarithm of the likelihood of each lag with its own noise, (l,)."""
-    alone = share @ np.square(np.abs(y))
+    alone = share @ power_of(y)
     noise = np.broadcast_to(alone, told.shape)
     for _ in range(_PASSES):
-        size = (np.square(np.abs(told)) / noise).sum(axis=1)
+        size = (power_of(told) / noise).sum(axis=1)
         gain = (y * told.conj() / noise).sum(axis=1) / np.maximum(size, 1e-300)
-        left = np.square(np.abs(y - gain[:, None] * told))
+        left = power_of(y - gain[:, None] * told)
         noise = left @ share.T
     own = np.log(noise) + left / noise
-    return np.asarray((np.log(alone) + np.square(np.abs(y)) / alone - own).sum(axis=1))
+    return (np.log(alone) + power_of(y) / alone - own).sum(axis=1)

@@ -111,16 +111,21 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
     branch = tree.branch_names.index(name)
     first, last = tree.branch_first[branch], tree.branch_first[branch + 1]
     ends = np.cumsum(tree.length[first:last])
-    return _along(int(first), ends, value * float(ends[-1]))
+    return _along(int(first), ends, value * ends[-1])
 
 
 def reach_of(tree: Tree, place: SensorPlace) -> tuple[float, float]:
     """Way to a place from the middle of the branches in the wind, at rest, east and north [m]."""
     area = tree.length * (tree.base_diameter + tree.tip_diameter)
     middle = np.average(0.5 * (tree.start + tree.end), axis=0, weights=area)
-    start, end = tree.start[place.segment], tree.end[place.segment]
-    east, north, _ = (start + place.along * (end - start) - middle).tolist()
+    east, north, _ = (point_at(tree, place) - middle).tolist()
     return east, north
+
+
+def point_at(tree: Tree, place: SensorPlace) -> Floats:
+    """Point of a place at rest in [m], (3,)."""
+    start, end = tree.start[place.segment], tree.end[place.segment]
+    return start + place.along * (end - start)
 
 
 _POINTS = {name: 45.0 * number for number, name in enumerate('N NE E SE S SW W NW'.split())}
@@ -136,7 +141,7 @@ def _number(text: str) -> float:
 
 def _on_stem(tree: Tree, height: float) -> SensorPlace:
     """Return the lowest place of the stem at a height above the root node in [m]."""
-    last = int(tree.branch_first[1])
+    last = tree.branch_first[1]
     tops = np.maximum.accumulate(tree.end[:last, 2]) - tree.start[0, 2]
     if not 0.0 <= height <= tops[-1]:
         cure = f'give 0 to {tops[-1]:.3g} m, or a branch and a share, as '
@@ -148,8 +153,8 @@ def _on_stem(tree: Tree, height: float) -> SensorPlace:
 def _along(first: int, ends: Floats, at: float) -> SensorPlace:
     """Return the place at a length, or height, of segments from a first one on."""
     row = min(int(np.searchsorted(ends, at)), len(ends) - 1)
-    before = float(ends[row - 1]) if row else 0.0
-    share = (at - before) / max(float(ends[row]) - before, 1e-12)
+    before = ends[row - 1] if row else 0.0
+    share = (at - before) / max(ends[row] - before, 1e-12)
     return SensorPlace(first + row, min(max(share, 0.0), 1.0))
 
 
@@ -175,7 +180,7 @@ def slopes_at_rest(
     poses = np.zeros((simulator.tree.n_segments, 7))
     slopes = []
     for shape in shapes.T:
-        amount = _TURN / max(float(np.abs(shape).max()), 1e-300)
+        amount = _TURN / max(np.abs(shape).max(), 1e-300)
         turned = np.ascontiguousarray(amount * shape)
         ahead, behind = (
             read(simulator.place_rotations(each, poses)).copy() for each in (turned, -turned)
@@ -208,8 +213,8 @@ def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
 
 def _joint(tree: Tree, place: SensorPlace) -> int:
     """Return the segment below the joint of its branch that is nearest to a place."""
-    branch = int(tree.branch_of_segment[place.segment])
-    first, last = int(tree.branch_first[branch]), int(tree.branch_first[branch + 1])
+    branch = tree.branch_of_segment[place.segment]
+    first, last = tree.branch_first[branch], tree.branch_first[branch + 1]
     if last - first < 2:
         cure = 'give a branch of two segments or more'
         raise ParameterError('strain of a branch of one segment', where='at', cure=cure)
@@ -225,11 +230,11 @@ def bend_at(tree: Tree, poses: Floats, place: SensorPlace) -> Floats:
     """
     below = _joint(tree, place)
     turn = turn_between(poses[below, 3:], poses[below + 1, 3:])
-    span = 0.5 * float(tree.length[below] + tree.length[below + 1])
-    low, high = (float(each[place.segment]) for each in (tree.base_diameter, tree.tip_diameter))
+    span = 0.5 * (tree.length[below] + tree.length[below + 1])
+    low, high = (each[place.segment] for each in (tree.base_diameter, tree.tip_diameter))
     here = low + place.along * (high - low)
-    joint = 0.5 * float(tree.tip_diameter[below] + tree.base_diameter[below + 1])
-    return np.asarray(_PER_STRAIN * 0.5 * here * (joint / here) ** 4 * turn / span)
+    joint = 0.5 * (tree.tip_diameter[below] + tree.base_diameter[below + 1])
+    return _PER_STRAIN * 0.5 * here * (joint / here) ** 4 * turn / span
 
 
 def strain_of(bent: Floats) -> Floats:
@@ -264,4 +269,4 @@ def turn_between(before: Floats, after: Floats) -> Floats:
     vector = np.where(scalar < 0.0, -vector, vector)
     sine = np.linalg.norm(vector, axis=-1, keepdims=True)
     angle = 2.0 * np.arctan2(sine, np.abs(scalar))
-    return np.asarray(vector * np.where(sine > 1e-9, angle / np.maximum(sine, 1e-9), 2.0))
+    return vector * np.where(sine > 1e-9, angle / np.maximum(sine, 1e-9), 2.0)

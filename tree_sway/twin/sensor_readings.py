@@ -18,7 +18,6 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.native import LIBRARY, NativeReadings
 from tree_sway.twin.late_wind import LateWind, LONGEST_WAY
 from tree_sway.twin.later_work import LaterWork
-from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import (
     FoundMounting,
     LagRange,
@@ -52,10 +51,8 @@ class SensorReadings:
     ----------
     unknown
         Law of the unknown motion, with stiffness and damping of the model.
-    tracks, places
-        Sensors, and how each is moved by the coordinates of the model.
-    dt
-        Time step in [s].
+    tracks
+        Sensors.
     swing
         Displacement, rate and force of each coordinate in the wind alone, (m,).
     wind
@@ -67,13 +64,11 @@ class SensorReadings:
         self,
         unknown: UnknownMotion,
         tracks: Sequence[SensorTrack],
-        places: Sequence[PlaceMotion],
-        dt: float,
         swing: Sequence[Floats],
         wind: LateWind,
     ) -> None:
         self._unknown, self._tracks = unknown, tracks
-        self._dt, self._wind = dt, wind
+        self._dt, self._wind = unknown.dt, wind
         self._told_lag: SensorTrack | None = None
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
         self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
@@ -82,7 +77,7 @@ class SensorReadings:
         """Motion of each beyond the model's, in the frame of the tree, (k, 9)."""
         self.is_known = np.zeros(len(tracks), dtype=np.bool_)
         """Which of them there are, (k,)."""
-        shapes = [np.stack([each.displacement, each.rotation]) for each in places]
+        shapes = [np.stack(each.motion) for each in tracks]
         self._law = np.zeros((2, len(unknown.all_stiffness)))
         eta, rate, force = swing
         self.native = NativeReadings(
@@ -121,11 +116,11 @@ class SensorReadings:
                 self._search = None  # it looks at what the sensor measured before
         if self._wind.moves_model:
             self._find_mounting(step)
-            return int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
         counts = [each.native.count for each in self._tracks]
         found = int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
-        for track, count in zip(self._tracks, counts, strict=True):
-            track.native.count = count  # it remembers nothing of a model without wind
+        if not self._wind.moves_model:
+            for track, count in zip(self._tracks, counts, strict=True):
+                track.native.count = count  # it remembers nothing of a model without wind
         return found
 
     def _find_mounting(self, step: int) -> None:

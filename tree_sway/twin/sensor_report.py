@@ -94,7 +94,7 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
                 math.sqrt(max(track.excess, 0.0)),
                 0.0 if math.isnan(sensor.ring.period) else 1.0 / max(sensor.ring.period, 1e-9),
                 twin.observer.late * twin.period,
-                sensor.counts,
+                counts,
                 (*recognised, *odd, *lost),
                 twin.observer.sway_change(number),
             )

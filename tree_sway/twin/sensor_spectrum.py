@@ -9,17 +9,16 @@ series at each step.
 
 from __future__ import annotations
 
+from operator import sub
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Complexes, Floats
 from tree_sway.core.native import NativeSeries
 from tree_sway.twin.spectrum_change import WATCHED_BAND
-
-Waves = NDArray[np.complex128]
-"""Complex amplitudes."""
+from tree_sway.twin.waves import power_of
 
 _BAND = (0.5, 2.2)
 """Frequencies over the first one of the tree."""
@@ -81,32 +80,27 @@ class SensorSpectrum:
         """Its series in the native core, which adds the samples."""
         self._window = np.hanning(2 * half + 1)[:-1]
         self._stretch = np.zeros(2 * half)
-        axis = np.fft.rfftfreq(2 * half, dt)
-        inside = np.flatnonzero((axis > _BAND[0] * frequency) & (axis < _BAND[1] * frequency))
-        self._inside = slice(int(inside[0]), int(inside[-1]) + 1)
-        self.circular: Floats = 2.0 * np.pi * np.asarray(axis[self._inside], dtype=np.float64)
+        axis = np.asarray(np.fft.rfftfreq(2 * half, dt), dtype=np.float64)
+        self._inside = _within(axis, _BAND, frequency)
+        self.circular: Floats = 2.0 * np.pi * axis[self._inside]
         """Circular frequencies in [rad/s], (f,)."""
         n_frequencies = len(self.circular)
         shape = (n_frequencies, self._n_products)
         self._waves = np.zeros(shape, dtype=np.complex128)
         self._products = np.zeros((*shape, self._n_products), dtype=np.complex128)
         self._power = np.zeros(n_frequencies)
-        low, high = (edge * frequency for edge in WATCHED_BAND)
-        self._is_watched = (axis > low) & (axis < high)
-        self.watched_frequencies: Floats = np.asarray(axis[self._is_watched], dtype=np.float64)
+        self._is_watched = _within(axis, WATCHED_BAND, frequency)
+        self.watched_frequencies: Floats = axis[self._is_watched]
         """Frequencies of the watched motion in [Hz], (g,)."""
         self._watched = np.zeros((len(self.watched_frequencies), 2))
         self._noise = np.zeros(2)
-        self._block = SpectrumBlock(
-            np.zeros(n_frequencies), self._watched.copy(), self._noise.copy(), 0, 0.0
-        )
         self._filled = 0
         self._n_series = self._next = n_series
         self.count = 0
         """Number of stretches."""
-        self._taken = 0, 0.0, 0.0
         self.seconds = 0.0
         """Length of the motion so far in [s]."""
+        self._block = self._taken = self._so_far()
 
     def advance(self) -> bool:
         """Go on by a step; tell whether there is another sample."""
@@ -144,17 +138,17 @@ class SensorSpectrum:
             self._waves[:, self._next] = waves[self._inside]
         else:
             axis = self._next - self._n_products
-            self._watched[:, axis] += np.square(np.abs(waves[self._is_watched]))
+            self._watched[:, axis] += power_of(waves[self._is_watched])
         self._next += 1
         if self._next == self._n_series:
             self._products += self._waves[:, :, None] * self._waves[:, None].conj()
-            self._power += np.square(np.abs(self._waves[:, :2])).sum(axis=1)
+            self._power += power_of(self._waves[:, :2]).sum(axis=1)
             self.count += 1
 
     @property
     def power(self) -> float:
         """Power of east and north at all frequencies, a sum over the stretches."""
-        return float(self._power.sum())
+        return self._power.sum()
 
     @property
     def block_seconds(self) -> float:
@@ -163,20 +157,17 @@ class SensorSpectrum:
 
     def end_block(self) -> SpectrumBlock:
         """Begin a block; return the last one."""
-        before, power, noise = self._block, self._power.copy(), self._noise.copy()
-        watched = self._watched.copy()
-        self._block = SpectrumBlock(power, watched, noise, self.count, self.seconds)
-        return SpectrumBlock(
-            power - before.power,
-            watched - before.watched,
-            noise - before.noise,
-            self.count - before.n_stretches,
-            self.seconds - before.seconds,
-        )
+        before, self._block = self._block, self._so_far()
+        return SpectrumBlock(*map(sub, self._block, before))
+
+    def _so_far(self) -> SpectrumBlock:
+        """Return the block of all motion so far."""
+        power, watched, noise = self._power.copy(), self._watched.copy(), self._noise.copy()
+        return SpectrumBlock(power, watched, noise, self.count, self.seconds)
 
     def power_of_noise(self, deviation: float) -> float:
         """Power of white noise of a deviation at each frequency of a stretch, of one axis."""
-        return deviation**2 * float(np.square(self._window).sum())
+        return deviation**2 * np.square(self._window).sum()
 
     def note_noise(self, deviation: float, watched: float) -> None:
         """Note the noise in a step of the last stretch of both motions, standard deviations."""
@@ -185,28 +176,35 @@ class SensorSpectrum:
     @property
     def noise(self) -> float:
         """Mean power of the noise of the new stretches at each frequency, of one axis."""
-        return (float(self._noise[0]) - self._taken[2]) / max(self.new_stretches, 1)
+        new = self._noise[0] - self._taken.noise[0]
+        return new / max(self.new_stretches, 1)
 
     @property
     def new_stretches(self) -> int:
         """Number of stretches since products were taken last."""
-        return self.count - self._taken[0]
+        return self.count - self._taken.n_stretches
 
     @property
     def new_seconds(self) -> float:
         """Length of the motion since products were taken last [s]."""
-        return self.seconds - self._taken[1]
+        return self.seconds - self._taken.seconds
 
     def take_products(self) -> None:
         """Begin the products anew."""
         self._products[:] = 0.0
-        self._taken = self.count, self.seconds, float(self._noise[0])
+        self._taken = self._so_far()
 
     @property
-    def products(self) -> Waves:
+    def products(self) -> Complexes:
         """
         Mean products of east, north and each force with the conjugates of all, (f, k, k).
 
         They are of the new stretches.
         """
         return self._products / max(self.new_stretches, 1)
+
+
+def _within(axis: Floats, band: tuple[float, float], frequency: float) -> NDArray[np.bool_]:
+    """Which frequencies of an axis are within a band over the first one of the tree."""
+    low, high = band
+    return (axis > low * frequency) & (axis < high * frequency)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Complexes, Floats
+from tree_sway.core.arrays import Complexes, Floats, Ints
 from tree_sway.core.native import LIBRARY, NativeSensor
 from tree_sway.twin.alignment import (
     align,
@@ -125,7 +125,7 @@ def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
 def lean_per_load(motion: PlaceMotion, stiffness: Floats, load: Floats) -> Floats:
     """Tilt of a place by the load of coordinates per wind to east and north, (2, m), (2, 2)."""
     east, north, _ = motion.rotation
-    return np.asarray(np.stack([-north, east]) / stiffness @ load.T)
+    return np.stack([-north, east]) / stiffness @ load.T
 
 
 class OtherSensor(NamedTuple):
@@ -172,14 +172,6 @@ NO_LAG = LagRange(0, 0, 1)
 """Range of a wind whose lag is not in question."""
 
 
-class Windows(NamedTuple):
-    """Steps in a period of the first sway and over which mountings are compared; a step [s]."""
-
-    period: int
-    compared: int
-    dt: float
-
-
 class FoundMounting(NamedTuple):
     """
     How a sensor is mounted, and its mean difference from the model then, (9,).
@@ -201,44 +193,48 @@ def _mounting(
     sensed: Floats,
     computed: Floats,
     sensor: MotionSensor,
-    windows: Windows,
+    window: int,
     lags: LagRange,
-    bend: Floats,
+    sway: Sway,
     samples: tuple[Floats, float],
 ) -> FoundMounting:
     """
-    Find a mounting by motion (n, 9), rows of the model, (12, n), and its lean by loads.
+    Find a mounting by motion (n, 9), rows of the model, (12, n), and what is known of the sway.
 
-    ``samples`` are the last ones as they came, (m, 9), and the steps from one to the next.
+    Motions are averaged over the steps of a window at most. ``samples`` are the last ones as they
+    came, (m, 9), and the steps from one to the next.
     """
     whole = sensed
     now, later = _lagging(-min(lags.of_wind, len(sensed) // 2), len(sensed))
     sensed, computed = sensed[now], computed[:, later]
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
-    known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
-    sway = Sway(bend, 1.0 / (windows.period * windows.dt), windows.dt)
+    known = sensor.reference, min(window, len(sensed) // 2), sensor.place.facing
+
+    def mounted(sign: float) -> Alignment:
+        return align(sensed, upright, free, *known, sign, sway, *samples)
+
     sign = 0.0
-    found = align(sensed, upright, free, *known, 0.0, sway, *samples)
-    lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
+    found = mounted(sign)
+    model = upright if found.has_gravity else free
+    lag = _lag(sensed, model, sway.period, lags, has_gravity=found.has_gravity)
     left = SensorLag()
     if not lag and found.problem != TELLS_LITTLE:
-        model = upright if found.has_gravity else free
-        left = _slow_lag(found.motion(sensed), model, windows, lags)
+        left = _slow_lag(found.motion(sensed), model, sway, lags)
         if found.has_gravity and np.isfinite(sensed[:, :3]).all():
             # Of opposite sign, a lean is mirrored.
             rival_sign = -math.copysign(1.0, found.scale[0])
-            rival = align(sensed, upright, free, *known, rival_sign, sway, *samples)
-            other = _slow_lag(rival.motion(sensed), model, windows, lags)
+            rival = mounted(rival_sign)
+            other = _slow_lag(rival.motion(sensed), model, sway, lags)
             if other.evidence > left.evidence + _MIRRORED:
                 found, left, sign = rival, other, rival_sign
-        steps = round(left.seconds / windows.dt)
+        steps = round(left.seconds / sway.dt)
         is_of_wind = left.is_sure and lags.earliest <= steps <= lags.latest
         if is_of_wind and abs(steps) >= lags.least:
             lag, left = steps, SensorLag()
     if lag:
         later, earlier = _lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
-        found = align(sensed, upright, free, *known, sign, sway, *samples)
+        found = mounted(sign)
     if found.problem:
         lag = 0
     bias = np.zeros(9)
@@ -247,11 +243,11 @@ def _mounting(
         moved = found.motion(sensed)
         bias = (moved - model).mean(axis=0)
         pull = GRAVITY * found.has_gravity
-        where = other_lever(moved, model, sway.frequency, windows.dt, pull)
+        where = other_lever(moved, model, sway.frequency, sway.dt, pull)
         found = replace(found, notes=(*found.notes, *filter(None, [where])))
     left_for: float | None = None
     said = ''
-    apart = None if found.problem else _apart(found.motion(whole), windows, lags, left.seconds)
+    apart = None if found.problem else _apart(found.motion(whole), sway, lags, left.seconds)
     if apart is not None:
         left_for, said = apart
     elif left.is_by_chance:
@@ -281,9 +277,7 @@ def _lag_left_for(found: SensorLag, lags: LagRange) -> float:
     return found.seconds if found.is_doubtful or lags.left_for is None else lags.left_for
 
 
-def _apart(
-    moved: Floats, windows: Windows, lags: LagRange, late: float
-) -> tuple[float, str] | None:
+def _apart(moved: Floats, sway: Sway, lags: LagRange, late: float) -> tuple[float, str] | None:
     """
     Tell from which other sensors the motion of one, (n, 9), is apart in time; None from few.
 
@@ -293,21 +287,13 @@ def _apart(
     most others; of two both are, unless one is nearer to the model.
     """
     said: list[tuple[float, str]] = []
-    rows = _first_rows(moved)
     for other in lags.others:
         motion = other.alignment.motion(other.sensed)
-        if not len(motion) or _first_rows(motion) != rows:
+        if not len(motion) or _first_rows(motion) != _first_rows(moved):
             continue
-        found = sensor_lag(
-            moved[-len(motion) :, rows],
-            motion[:, rows],
-            1.0 / (windows.period * windows.dt),
-            windows.dt,
-            longest=_LONGEST,
-            about=lags.about - other.about,
-            none=abs(lags.about - other.about),
-            left_for=lags.left_for,
-        )
+        about = lags.about - other.about
+        beside = lags._replace(about=about, none=abs(about), is_told=True, later=None)
+        found = _slow_lag(moved[-len(motion) :], motion, sway, beside)
         if _is_off(found, lags):
             said.append((_lag_left_for(found, lags), found.said_of(other.name)))
     if 2 * len(said) <= len(lags.others):
@@ -322,17 +308,15 @@ def _first_rows(moved: Floats) -> slice:
     return slice(first, first + 2)
 
 
-def _slow_lag(moved: Floats, model: Floats, windows: Windows, lags: LagRange) -> SensorLag:
+def _slow_lag(moved: Floats, model: Floats, sway: Sway, lags: LagRange) -> SensorLag:
     """Find the lag of a sensor (n, 9) by its lean, or else by the first quantity it measures."""
     rows = _first_rows(moved)
-    frequency = 1.0 / (windows.period * windows.dt)
-    longest = _LONGEST if lags.is_told else LONGEST_WAY
     return sensor_lag(
         moved[:, rows],
         model[:, rows],
-        frequency,
-        windows.dt,
-        longest=longest,
+        sway.frequency,
+        sway.dt,
+        longest=_LONGEST if lags.is_told else LONGEST_WAY,
         about=lags.about,
         none=lags.none,
         left_for=lags.left_for,
@@ -340,31 +324,24 @@ def _slow_lag(moved: Floats, model: Floats, windows: Windows, lags: LagRange) ->
     )
 
 
-def _lag(
-    sensed: Floats,
-    upright: Floats,
-    free: Floats,
-    window: int,
-    lags: LagRange,
-    *,
-    has_gravity: bool,
-) -> int:
+def _lag(sensed: Floats, model: Floats, period: int, lags: LagRange, *, has_gravity: bool) -> int:
     """
     By how many steps a sensor moves later than the model, where that is sure; else 0.
 
     Gravity tells the lean in gusts, which a softer tree has in common with its model. The rest is
     sway, which resembles itself a period later.
     """
-    model = upright if has_gravity else free
+    if lags.earliest == lags.latest:
+        return 0
     told = [rows for rows in (slice(0, 3), slice(3, 6)) if np.isfinite(sensed[:, rows]).all()]
     if has_gravity and slice(0, 3) in told:
         told = told[:1]
     pairs = [
-        (averaged(sensed[:, rows], window), averaged(model[:, rows], window)) for rows in told
+        (averaged(sensed[:, rows], period), averaged(model[:, rows], period)) for rows in told
     ]
-    if not pairs or lags.earliest == lags.latest:
+    if not pairs:
         return 0
-    found = find_lag(pairs, lags.earliest, lags.latest, window)
+    found = find_lag(pairs, lags.earliest, lags.latest, period)
     return found.steps if found.is_sure and abs(found.steps) >= lags.least else 0
 
 
@@ -399,6 +376,8 @@ class SensorTrack:
     ) -> None:
         self.sensor, self._dt, self.reach = sensor, dt, reach
         self.alignment: Alignment | None = None
+        self.motion = PlaceMotion(*np.zeros((2, 3, 0)))
+        """How the coordinates of the model move its place."""
         self.bend = np.eye(2)
         """Lean of its place per load to east and north, of any unit (`lean_per_load`), (2, 2)."""
         self.tells_little = False
@@ -414,8 +393,9 @@ class SensorTrack:
         self._sensed = np.full((round(_MEMORY / dt), 9), 0.0)
         self._computed = np.full((len(self._sensed), ROWS), 0.0)
         period = 1.0 / frequency
-        compared = max(_COMPARED, _LEAST_COMPARED * period)
-        self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)
+        self.window = max(round(period / dt), 1)
+        """Steps in a period of the first sway."""
+        self._compared = max(round(max(_COMPARED, _LEAST_COMPARED * period) / dt), 1)
         self._next_fit = round(_LEARNING / dt)
         self._next_mean = 0
         self._noise_period = math.inf
@@ -433,11 +413,6 @@ class SensorTrack:
         )  # fmt: skip
         """Its state in the native core."""
 
-    def _uses(self) -> tuple[int, ...]:
-        given = self._quantities
-        first = tuple(k for k, name in enumerate(('acceleration', 'rate')) if name in given)
-        return first if 'acceleration' in given or 'orientation' not in given else (*first, 2)
-
     @property
     def fitted(self) -> int:
         """Quantity whose spectrum is compared with the model's: the rate where there is one."""
@@ -453,7 +428,7 @@ class SensorTrack:
     def _own_noise(self) -> Floats:
         """Standard deviation of the noise that it has at each step, (3,)."""
         known = np.zeros(3) if self.alignment is None else self.alignment.noise
-        return np.asarray(known * math.sqrt(self._held))
+        return known * math.sqrt(self._held)
 
     @property
     def _held(self) -> float:
@@ -549,12 +524,10 @@ class SensorTrack:
         noise = noise_of(alignment.motion(self.sensor.ring.newest_samples()))
         self.alignment = replace(alignment, noise=self._known_noise(noise))
         every = round(_MEAN_EVERY / self._dt)
-        count = self.native.count
-        self._next_mean = count + every
-        rows = np.arange(max(count - every, 0), count) % len(self._sensed)
-        model = as_felt(self._computed[rows].T, has_gravity=alignment.has_gravity).T
-        missed = (alignment.motion(self._sensed[rows]) - model).mean(axis=0) - self.bias
-        self.bias += len(rows) / len(self._sensed) * missed
+        self._next_mean = self.native.count + every
+        missed = self._missed(alignment, every)
+        share = len(missed) / len(self._sensed)
+        self.bias += share * (missed.mean(axis=0) - self.bias)
 
     def _known_noise(self, found: Floats) -> Floats:
         """
@@ -577,25 +550,25 @@ class SensorTrack:
     def search(self, lags: LagRange = NO_LAG) -> Callable[[], FoundMounting]:
         """Return what finds its mounting from the motion so far."""
         self._next_fit = math.ceil(_LATER * self.native.count)
-        sensed, computed = self._remembered()
+        rows = self._last(len(self._sensed))
+        model = self._computed[rows].T.copy()
         lags = lags._replace(left_for=self._left_for)
-        model = computed.T.copy()
+        sway = Sway(self.bend, 1.0 / (self.window * self._dt), self._dt)
         samples = self.sensor.ring.newest_samples(), self._held
         return partial(
-            _mounting, sensed, model, self.sensor, self._windows, lags, self.bend, samples
+            _mounting, self._sensed[rows], model, self.sensor, self._compared, lags, sway, samples
         )
 
-    @property
-    def window(self) -> int:
-        """Steps in a period of the first sway."""
-        return self._windows.period
+    def _last(self, most: int) -> Ints:
+        """Rows of the last steps that are remembered, of a number of them at most."""
+        count, size = self.native.count, len(self._sensed)
+        return np.arange(max(count - min(most, size), 0), count) % size
 
-    def _remembered(self) -> tuple[Floats, Floats]:
-        """Copy the motion so far, the oldest first: samples (n, 9), rows of the model (n, 12)."""
-        n, size = max(self.native.count, 0), len(self._sensed)
-        first = n % size if n > size else 0
-        memory = self._sensed[: min(n, size)], self._computed[: min(n, size)]
-        return np.roll(memory[0], -first, axis=0), np.roll(memory[1], -first, axis=0)
+    def _missed(self, alignment: Alignment, most: int) -> Floats:
+        """Motion less that of the model in the last steps, of a number of them at most, (n, 9)."""
+        rows = self._last(most)
+        model = as_felt(self._computed[rows].T, has_gravity=alignment.has_gravity).T
+        return alignment.motion(self._sensed[rows]) - model
 
     def beyond(self, most: int) -> Floats:
         """
@@ -604,11 +577,7 @@ class SensorTrack:
         These are the three axes of each quantity that it is used for, (n, 3 k).
         """
         assert self.alignment is not None
-        count = self.native.count
-        rows = np.arange(max(count - min(most, len(self._sensed)), 0), count) % len(self._sensed)
-        model = as_felt(self._computed[rows].T, has_gravity=self.alignment.has_gravity).T
-        moved = self.alignment.motion(self._sensed[rows]) - model - self.bias
-        return moved[:, self.picked]
+        return (self._missed(self.alignment, most) - self.bias)[:, self.picked]
 
     def note_step(self, step: int) -> None:
         """Note by how many steps it is behind; if by more than before, some are missing."""
@@ -628,16 +597,16 @@ class SensorTrack:
     def beside(self, track: SensorTrack, about: float) -> OtherSensor:
         """Return it as another sensor beside one, by their last samples of the same steps."""
         assert self.alignment is not None
-        count, last = min(self.whole, track.whole), self.native.count
-        sensed = self._sensed[np.arange(last - count, last) % len(self._sensed)]
+        sensed = self._sensed[self._last(min(self.whole, track.whole))]
         return OtherSensor(self.sensor.name, self.alignment, sensed, about, self.late)
 
     def delay_model(self, lag: int) -> None:
         """Remember the model as if its wind had been later by a number of steps."""
-        sensed, computed = self._remembered()
-        later, earlier = _lagging(lag, len(sensed))
-        kept = max(len(sensed) - abs(lag), 0)
-        self._sensed[:kept], self._computed[:kept] = sensed[later], computed[earlier]
+        rows = self._last(len(self._sensed))
+        later, earlier = _lagging(lag, len(rows))
+        kept = max(len(rows) - abs(lag), 0)
+        self._sensed[:kept] = self._sensed[rows[later]]
+        self._computed[:kept] = self._computed[rows[earlier]]
         gone = self.native.count - kept
         if gone > 0:
             self._next_fit -= gone
@@ -659,7 +628,10 @@ class SensorTrack:
         native.in_use = native.is_mounted and not native.is_refused
         if found.problem:
             return
-        self.uses = self._uses()
+        given = self._quantities
+        first = tuple(k for k, name in enumerate(('acceleration', 'rate')) if name in given)
+        is_felt = 'acceleration' in given or 'orientation' not in given
+        self.uses = first if is_felt else (*first, 2)
         self.picked = slice(3 * self.uses[0], 3 * self.uses[-1] + 3)
         written = self._mounting
         written[:9], written[9:11] = found.turn.ravel(), found.scale
@@ -672,9 +644,8 @@ class SensorTrack:
         known = self.alignment
         if known is None:
             return False
-        angle = math.acos(
-            min(max(0.5 * (float(np.vdot(found.turn, known.turn)) - 1.0), -1.0), 1.0)
-        )
+        cosine = 0.5 * (np.vdot(found.turn, known.turn) - 1.0)
+        angle = math.acos(np.clip(cosine, -1.0, 1.0))
         is_other = angle > _OTHER * math.hypot(found.azimuth_error, known.azimuth_error)
         if is_other and self.native.count <= len(self._sensed):
             return False  # it is of all that the present one is of, and of more

@@ -94,7 +94,8 @@ class Block(NamedTuple):
     """
     Logarithms of the power of each band, of east and then of north, (2 k,), and their variances.
 
-    ``speed`` is the logarithm of that of the mean wind in [m/s], ``direction`` its own [rad].
+    They are over the power that goes with the speed. ``speed`` is the logarithm of that of the
+    mean wind in [m/s], ``direction`` its own [rad].
     """
 
     power: Floats
@@ -118,12 +119,12 @@ class SpectrumChange:
 
     def __init__(self, frequencies: Floats, first: float) -> None:
         lowest = first * WATCHED_BAND[0]
-        highest = min(first * WATCHED_BAND[1], float(frequencies[-1]))
+        highest = min(first * WATCHED_BAND[1], frequencies[-1])
         n_bands = int(math.log(highest / lowest) / math.log(_RATIO))
         self._edges = lowest * _RATIO ** np.arange(n_bands + 1)
         ends = np.searchsorted(frequencies, self._edges).tolist()
         self._bands = [slice(begin, end) for begin, end in pairwise(ends)]
-        self._resolution = float(frequencies[1] - frequencies[0])
+        self._resolution = frequencies[1] - frequencies[0]
         self._same, self._by_speed, self._alike, self._by_chance = _laws(n_bands)
         self._windows = _windows(n_bands)
         self._blocks: list[Block] = []
@@ -154,7 +155,25 @@ class SpectrumChange:
             The change; its size is 0 where there is no past.
 
         """
-        self._blocks.append(self._block(power, noise, seconds, wind))
+        means, variances = np.zeros((2, 2, len(self._bands)))
+        for k, band in enumerate(self._bands):
+            within = power[band]
+            mean = within.mean(axis=0)
+            # A peak within the band has fewer independent values.
+            values = np.square(within.sum(axis=0)) / np.square(within).sum(axis=0)
+            variance = 1.0 / (_INDEPENDENT * seconds * self._resolution * values)
+            least = _LEAST_POWER * np.sqrt(variance) * noise
+            sway = np.maximum(mean - noise, np.maximum(least, 1e-300))
+            means[:, k] = np.log(sway)
+            variances[:, k] = variance * np.square(mean / sway)
+        east, north = wind
+        speed = math.log(max(math.hypot(east, north), 0.1))
+        own = means.ravel() - _POWER_BY_SPEED * speed
+        self._blocks.append(Block(own, variances.ravel(), speed, math.atan2(north, east)))
+        return self._largest()
+
+    def _largest(self) -> BandChange:
+        """Find the largest change of the last blocks."""
         n_blocks = len(self._blocks)
         past = n_blocks - 1 if self._told is None else self._n_past
         last = self._change(past, self._blocks[-1:]).size if past else _USUAL
@@ -194,24 +213,6 @@ class SpectrumChange:
             del each[self._n_past : -n_recent]
         return now
 
-    def _block(
-        self, power: Floats, noise: float, seconds: float, wind: tuple[float, float]
-    ) -> Block:
-        found, variances = np.zeros((2, 2, len(self._bands)))
-        for k, band in enumerate(self._bands):
-            within = power[band]
-            mean = within.mean(axis=0)
-            # A peak within the band has fewer independent values.
-            values = np.square(within.sum(axis=0)) / np.square(within).sum(axis=0)
-            variance = 1.0 / (_INDEPENDENT * seconds * self._resolution * values)
-            least = _LEAST_POWER * np.sqrt(variance) * noise
-            sway = np.maximum(mean - noise, np.maximum(least, 1e-300))
-            found[:, k] = np.log(sway)
-            variances[:, k] = variance * np.square(mean / sway)
-        east, north = wind
-        speed = math.log(max(math.hypot(east, north), 0.1))
-        return Block(found.ravel(), variances.ravel(), speed, math.atan2(north, east))
-
     def _covariance(self, one: Block, other: Block) -> Floats:
         """Covariance of the logarithms of two blocks, (2 k, 2 k)."""
         alike = math.exp(-0.5 * _unlike(one, other))
@@ -233,19 +234,19 @@ class SpectrumChange:
             shared = np.vstack(means)
             own = np.mean([self._covariance(a, b) for a in recent for b in recent], axis=0)
             by_past = np.linalg.solve(before, shared).T
-            told = np.concatenate([each.power - _POWER_BY_SPEED * each.speed for each in past])
-            now = np.mean([each.power - _POWER_BY_SPEED * each.speed for each in recent], axis=0)
+            told = np.concatenate([each.power for each in past])
+            now = np.mean([each.power for each in recent], axis=0)
             beyond = now - by_past @ told
             covariance = own - by_past @ shared
             weighted = np.linalg.solve(covariance, self._windows.T)
         information = (self._windows.T * weighted).sum(axis=0)
         sizes = beyond @ weighted / np.sqrt(information)
-        which = int(np.abs(sizes).argmax()) if window is None else window
+        which = np.abs(sizes).argmax() if window is None else window
         n_bands = len(self._bands)
         bands = np.flatnonzero(self._windows[which]) % n_bands
         low, high = self._edges[[bands.min(), bands.max() + 1]].tolist()
-        power = math.exp(float(sizes[which]) / math.sqrt(information[which]))
-        return BandChange(power, low, high, abs(float(sizes[which])), which)
+        power = math.exp(sizes[which] / math.sqrt(information[which]))
+        return BandChange(power, low, high, abs(sizes[which]), which)
 
 
 def _unlike(one: Block, other: Block) -> float:
@@ -282,6 +283,5 @@ def _windows(n_bands: int) -> Floats:
         for begin in range(n_bands - width + 1):
             window = np.zeros(n_bands)
             window[begin : begin + width] = 1.0
-            none = np.zeros(n_bands)
-            found += [[window, none], [none, window], [window, window]]
-    return np.array(found).reshape(len(found), -1)
+            found += [np.kron(axes, window) for axes in ((1, 0), (0, 1), (1, 1))]
+    return np.array(found)

@@ -51,8 +51,7 @@ class SwayLaw:
     @property
     def matrix(self) -> Floats:
         """The step as a matrix on the state, (3 m, 3 m)."""
-        blocks = [[np.diag(self.step[i, j]) for j in range(3)] for i in range(3)]
-        return np.block(blocks)
+        return np.block([[np.diag(each) for each in row] for row in self.step])
 
     def ahead(self, n_steps: int) -> Floats:
         """Several steps at once, (3, 3, m)."""
@@ -159,7 +158,7 @@ def predicted_covariance(step: Floats, sensed: Floats, driven: Floats, noise: Fl
     one = np.eye(len(step))
     for _ in range(_MOST_DOUBLINGS):
         both = np.linalg.solve(one + seen @ found, np.hstack([onward, seen]))
-        next_onward, spread = both[:, : len(step)], both[:, len(step) :]
+        next_onward, spread = np.hsplit(both, 2)
         added = onward.T @ found @ next_onward
         seen = seen + onward @ spread @ onward.T
         seen = 0.5 * (seen + seen.T)
@@ -210,4 +209,4 @@ def told_shares(gains: SteadyFilter, law: SwayLaw, noise: Floats) -> Floats:
         added = noisy @ noisy.T + kept[:, 2 * m :] @ law.driven @ kept[:, 2 * m :].T
         left = predicted_covariance(kept @ step, np.zeros((0, 3 * m)), added, np.zeros(0))
     alone = np.diag(stationary_covariance(law))[:m]
-    return np.asarray(1.0 - np.diag(left)[:m] / np.maximum(alone, 1e-300))
+    return 1.0 - np.diag(left)[:m] / np.maximum(alone, 1e-300)

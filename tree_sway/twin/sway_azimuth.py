@@ -25,6 +25,7 @@ over all a and b.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
 import math
 from typing import NamedTuple
@@ -32,6 +33,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Complexes, Floats, Ints
+from tree_sway.twin.waves import power_of, way_in
 
 _EDGES = (0.0, 0.06, 0.12, 0.25, 0.45, 0.75, 1.4)
 """Edges of the bands, over the first frequency [-]."""
@@ -59,7 +61,7 @@ _ANGLES = np.radians(np.arange(-180.0, 180.0, 4.0))
 _TURNS = np.array([[np.cos(_ANGLES), -np.sin(_ANGLES)], [np.sin(_ANGLES), np.cos(_ANGLES)]])
 """Turns by these angles, (2, 2, a)."""
 
-_TAPERED, _WIDTH, _LEAST_WIDTH = 0.1, 0.3, 4
+_WIDTH, _LEAST_WIDTH = 0.3, 4
 _MOST_NOISE, _LEAST_NOISE = 0.95, 0.01
 _LEAST_ERROR = 0.03
 """Least error of an angle [rad], half a step of the angles."""
@@ -77,6 +79,11 @@ class Sway(NamedTuple):
     frequency: float
     dt: float
 
+    @property
+    def period(self) -> int:
+        """Steps in a period of the first sway."""
+        return max(round(1.0 / (self.frequency * self.dt)), 1)
+
 
 def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tuple[float, float]:
     """
@@ -85,8 +92,9 @@ def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tupl
     Motions are leans to east and north, of the sensor and of the model from its rest, (n, 2);
     ``noise`` is the deviation of that of the sensor.
     """
-    found = _by_bands(_spectra(moved, model, noise, sway), _ellipse(sway.bend, model.mean(axis=0)))
-    ways = np.einsum('ija,i->ja', _TURNS, model.mean(axis=0))
+    lean = model.mean(axis=0)
+    found = _by_bands(_bands(moved, model, noise, sway), _ellipse(sway.bend, lean))
+    ways = np.einsum('ija,i->ja', _TURNS, lean)
     found += _SKEWED * _skewness(moved, ways, sway)
     weights = np.array(list(_GAINS.values()))
     chance = np.einsum('ija,j->a', np.exp(found - found.max()), weights)
@@ -95,41 +103,43 @@ def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tupl
     away = _between(_ANGLES, best)
     near = chance * (np.abs(away) < 0.5 * np.pi)
     best += float(near @ away / near.sum())
-    variance = float(chance @ np.square(_between(_ANGLES, best)))
+    variance = chance @ np.square(_between(_ANGLES, best))
     return best, math.hypot(_LEAST_ERROR, math.sqrt(variance))
 
 
-class _Spectra(NamedTuple):
+class _Band(NamedTuple):
     """
-    Lines of the spectra of two motions, over the deviation of the sensor's near each.
+    Lines of the spectra of two motions in a band, over the deviation of the sensor's near each.
 
-    ``hertz`` is (n,), lines of the sensor and of the model are (n, 2); ``noisy`` is the share of
-    noise in the power of the sensor, (n,), and ``edges`` the number of lines below each edge.
+    ``hertz`` is (n, 1), lines of the sensor and of the model are (n, 2); ``noisy`` is the share of
+    noise in the power of the sensor.
     """
 
     hertz: Floats
     sensor: Complexes
     model: Complexes
-    noisy: Floats
-    edges: Ints
+    noisy: float
 
 
-def _spectra(moved: Floats, model: Floats, noise: float, sway: Sway) -> _Spectra:
+def _bands(moved: Floats, model: Floats, noise: float, sway: Sway) -> Iterator[_Band]:
     count = len(moved)
     seconds = count * sway.dt
-    fade = np.minimum((np.arange(count) + 0.5) / (_TAPERED * count), 1.0)[:, None]
-    fade = 0.5 - 0.5 * np.cos(np.pi * np.minimum(fade, fade[::-1]))
+    fade = 0.5 - 0.5 * np.cos(np.pi * way_in(count)[:, None])
     most = int(_EDGES[-1] * sway.frequency * seconds)
     lines = np.arange(1, min(most, count // 2) + 1)
     y, x = (
         np.fft.rfft(fade * (each - each.mean(axis=0)), axis=0)[lines] for each in (moved, model)
     )
-    power = _smoothed(np.square(np.abs(y)).sum(axis=1), lines)
+    power = _smoothed(power_of(y).sum(axis=1), lines)
     share = 2.0 * noise**2 * np.square(fade).sum() / power
     size = np.sqrt(power)[:, None]
     edges = np.searchsorted(lines, np.array(_EDGES) * sway.frequency * seconds, 'right')
     noisy = np.clip(share, _LEAST_NOISE, _MOST_NOISE)
-    return _Spectra(lines / seconds, y / size, x / size, noisy, edges)
+    for first, last in pairwise(edges.tolist()):
+        if first < last:
+            rows = slice(first, last)
+            hertz = lines[rows, None] / seconds
+            yield _Band(hertz, y[rows] / size[rows], x[rows] / size[rows], noisy[rows].mean())
 
 
 def _smoothed(power: Floats, lines: Ints) -> Floats:
@@ -141,17 +151,11 @@ def _smoothed(power: Floats, lines: Ints) -> Floats:
     return np.maximum((sums[last] - sums[first]) / (last - first), 1e-300)
 
 
-def _by_bands(spectra: _Spectra, ellipse: Floats) -> Floats:
+def _by_bands(bands: Iterator[_Band], ellipse: Floats) -> Floats:
     """Logarithm of the likelihood by a, b and the angle, (losses, gains, a), of all bands."""
     found = np.zeros((len(_LOSSES), len(_GAINS), len(_ANGLES)))
-    for first, last in pairwise(spectra.edges.tolist()):
-        n = last - first
-        if not n:
-            continue
-        y = spectra.sensor[first:last]
-        x = spectra.model[first:last]
-        hertz = spectra.hertz[first:last, None]
-        share = float(spectra.noisy[first:last].mean())
+    for hertz, y, x, share in bands:
+        n = len(hertz)
         whitened = np.linalg.inv((1.0 - share) * ellipse + 0.5 * share * np.eye(2))
         own = np.einsum('ija,jk,lka->ila', _TURNS, _products(y, y), _TURNS)
         own += _LEAST_NOISE**2 * n * np.eye(2)[..., None]
@@ -170,7 +174,7 @@ def _by_bands(spectra: _Spectra, ellipse: Floats) -> Floats:
 
 def _between(angles: Floats, angle: float) -> Floats:
     """Angles from another one, between -pi and pi [rad]."""
-    return np.asarray(np.angle(np.exp(1j * (angles - angle))))
+    return np.angle(np.exp(1j * (angles - angle)))
 
 
 def _ellipse(bend: Floats, lean: Floats) -> Floats:
@@ -178,13 +182,13 @@ def _ellipse(bend: Floats, lean: Floats) -> Floats:
     load = float(np.linalg.norm(np.linalg.pinv(bend, rcond=0.05) @ lean))
     along = lean / max(load, 1e-300)
     found = bend @ bend.T + (_LONGER - 1.0) * np.outer(along, along)
-    return np.asarray(found / max(float(np.trace(found)), 1e-300))
+    return found / max(np.trace(found), 1e-300)
 
 
 def _skewness(moved: Floats, ways: Floats, sway: Sway) -> Floats:
     """Skewness of a lean (n, 2) along some ways (2, a), -1 to 1, (a,); spikes do not count."""
-    block = max(round(1.0 / (sway.frequency * sway.dt)), 1)
-    slow = np.median(moved[: len(moved) // block * block].reshape(-1, block, 2), axis=1)
+    n_periods = len(moved) // sway.period
+    slow = np.median(moved[: n_periods * sway.period].reshape(-1, sway.period, 2), axis=1)
     along = (slow - slow.mean(axis=0)) @ ways
     size = np.maximum(np.square(along).mean(axis=0), 1e-100) ** 1.5
     return np.clip((along**3).mean(axis=0) / size, -1.0, 1.0)
@@ -192,7 +196,7 @@ def _skewness(moved: Floats, ways: Floats, sway: Sway) -> Floats:
 
 def _products(one: Complexes, other: Complexes) -> Floats:
     """Sum the products of lines, (2, 2)."""
-    return np.asarray((one.T @ other.conj()).real)
+    return (one.T @ other.conj()).real
 
 
 def _of_any_size(trace: Floats, det: Floats, n: int) -> Floats:
@@ -205,4 +209,4 @@ def _of_any_size(trace: Floats, det: Floats, n: int) -> Floats:
     less = (n - _KNOWN) * trace
     size = (np.sqrt(np.square(less) + 16.0 * _KNOWN * n * det) - less) / (4.0 * n)
     square = np.square(size) + size * trace + det
-    return np.asarray(2.0 * _KNOWN * np.log(size) - (n + _KNOWN) * np.log(square))
+    return 2.0 * _KNOWN * np.log(size) - (n + _KNOWN) * np.log(square)

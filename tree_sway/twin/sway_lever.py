@@ -72,7 +72,7 @@ def other_lever(moved: Floats, model: Floats, frequency: float, dt: float, pull:
     levers = np.log(np.maximum([own, of_model], _LEAST))
     share = told / told.sum()
     means = levers @ share
-    spread = math.sqrt(float(share @ np.square(levers[1] - means[1])))
+    spread = math.sqrt(share @ np.square(levers[1] - means[1]))
     here, there = np.exp(means).tolist()
     if abs(math.log(here / there)) < _OTHER + _PER_SPREAD * spread:
         return ''
@@ -96,7 +96,7 @@ def _levers(
         return np.fft.rfft((stretches - stretches.mean(axis=2, keepdims=True)) * window)
 
     def spectrum(one: Complexes, other: Complexes) -> Complexes:
-        return np.asarray((one.conj() * other).sum(axis=(0, 1)))
+        return (one.conj() * other).sum(axis=(0, 1))
 
     of_turn, of_felt = waves(turned), waves(felt)
     hertz = np.fft.rfftfreq(length, dt)

@@ -22,7 +22,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -121,13 +120,6 @@ class SwayChange:
         )
 
 
-class _Middle(NamedTuple):
-    """Logarithms of the middle of a spectrum [Hz] and of the mean wind [m/s] of a block."""
-
-    frequency: float
-    wind: float
-
-
 class SwayWatch:
     """
     Blocks of the motion of a sensor, the last ones against those before.
@@ -145,21 +137,17 @@ class SwayWatch:
         self._spectrum = spectrum
         self._bands = SpectrumChange(spectrum.watched_frequencies, frequency)
         self._work: LaterWork[BandChange] | None = None
-        self._blocks: list[_Middle] = []
+        # Logarithms of the middle of the spectrum [Hz] and of the mean wind [m/s].
+        self._blocks: list[tuple[float, float]] = []
         self._n_past = 0
         self._began = (0.0, 0.0, 0)
         self._told = 1.0  # the largest ratio since a change is told
         self.change: SwayChange | None = None
         """The change that lasts, else the last comparison; None before any."""
 
-    @property
-    def is_due(self) -> bool:
-        """Whether a block ends, or bands are being compared."""
-        return self._work is not None or self._spectrum.block_seconds >= BLOCK
-
     def advance(self, winds: tuple[float, float, int]) -> None:
         """
-        End a block, or go on with comparing its bands.
+        End a block that is full, and go on with comparing the bands of the one before.
 
         Parameters
         ----------
@@ -169,18 +157,19 @@ class SwayWatch:
         """
         if self._work is not None and (found := self._work.advance()) is not None:
             self._work = None
-            self._take(found)
+            if self.change is not None:
+                self.change = replace(self.change, band=found)
         if self._spectrum.block_seconds < BLOCK:
             return
         block = self._spectrum.end_block()
         east, north, count = (now - then for now, then in zip(winds, self._began, strict=True))
         wind = east / count, north / count
         self._began = winds
-        floor = 2.0 * float(block.noise[0])
+        floor = 2.0 * block.noise[0]
         power = np.maximum(block.power - floor, 0.0)
         if power.sum() > max(_LEAST_POWER * floor * len(power), 1e-300):
             frequency = power @ np.log(self._spectrum.circular / (2.0 * np.pi)) / power.sum()
-            self._compare(_Middle(float(frequency), math.log(max(math.hypot(*wind), 0.1))))
+            self._compare((float(frequency), math.log(max(math.hypot(*wind), 0.1))))
         if block.n_stretches:
             find = partial(
                 self._bands.add,
@@ -191,12 +180,7 @@ class SwayWatch:
             )
             self._work = LaterWork(find, _COMPARED_AFTER)
 
-    def _take(self, band: BandChange) -> None:
-        """Take the largest change of a band."""
-        if self.change is not None:
-            self.change = replace(self.change, band=band)
-
-    def _compare(self, last: _Middle) -> None:
+    def _compare(self, last: tuple[float, float]) -> None:
         """Add a block, and compare the last ones with those before any change."""
         self._blocks.append(last)
         before = self.change
@@ -233,12 +217,12 @@ def _foretold(past: Floats, wind: float) -> tuple[float, float]:
     """
     middle = past.mean(axis=0)
     frequency, winds = (past - middle).T
-    known = float(np.square(winds).sum()) / _SCATTER**2
-    slope = float(winds @ frequency) / _SCATTER**2 / (known + 1.0 / _SLOPE**2)
+    known = np.square(winds).sum() / _SCATTER**2
+    slope = (winds @ frequency) / _SCATTER**2 / (known + 1.0 / _SLOPE**2)
     left = frequency - slope * winds
-    squares = _KNOWN_LIKE * _SCATTER**2 + float(np.square(left).sum())
+    squares = _KNOWN_LIKE * _SCATTER**2 + np.square(left).sum()
     scatter = squares / (_KNOWN_LIKE + max(len(past) - 2, 0))
-    apart = wind - float(middle[1])
+    apart = wind - middle[1]
     of_slope = apart**2 / (known * _SCATTER**2 / scatter + 1.0 / _SLOPE**2)
     variance = scatter * (1.0 / len(past) + 1.0 / _RECENT) + of_slope
-    return float(middle[0]) + slope * apart, math.sqrt(variance)
+    return middle[0] + slope * apart, math.sqrt(variance)

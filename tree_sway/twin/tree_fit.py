@@ -32,10 +32,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Complexes, Floats
 from tree_sway.core.drag import DRAG
 from tree_sway.core.setup import one_thread
-from tree_sway.twin.sensor_spectrum import Waves
 
 _STIFFNESS_SPREAD, _DAMPING_SPREAD = 0.2, 0.5
 """Standard deviations of the logarithms of stiffness and damping, before any measurement."""
@@ -113,7 +112,7 @@ class Spectrum(NamedTuple):
     """
 
     rows: Floats
-    products: Waves
+    products: Complexes
     circular: Floats
     n_stretches: int
     seconds: float
@@ -134,7 +133,7 @@ class Known(NamedTuple):
 
     def later(self) -> Known:
         """Return what is left of it for motion that comes later."""
-        beside = np.vstack([self.chances[:1], self.chances, self.chances[-1:]])
+        beside = np.pad(self.chances, ((1, 1), (0, 0)), 'edge')
         return self._replace(chances=(beside[:-2] + beside[1:-1] + beside[2:]) / 3.0)
 
 
@@ -195,16 +194,16 @@ def fit_of(
     found = (told * weight).reshape(2, -1).sum(axis=1) / weight.sum()
     information, weighted = (found + before.drag).tolist()
     seconds = before.seconds + max(each.seconds for each in spectra)
-    first = _mean(np.log(_STIFFNESSES), chances.sum(axis=1))
-    second = _mean(np.log(_DAMPINGS), chances.sum(axis=0))
-    third = _drag(information, weighted)
+    stiffer, stiffness_error = _mean(np.log(_STIFFNESSES), chances.sum(axis=1))
+    more_damped, damping_error = _mean(np.log(_DAMPINGS), chances.sum(axis=0))
+    dragged, drag_error = _drag(information, weighted)
     fit = TreeFit(
-        math.exp(first[0]),
-        math.exp(second[0]),
-        first[1],
-        second[1],
-        math.exp(third[0]),
-        third[1],
+        math.exp(stiffer),
+        math.exp(more_damped),
+        stiffness_error,
+        damping_error,
+        math.exp(dragged),
+        drag_error,
         seconds / 3600.0,
     )
     return fit, Known(chances, (information, weighted), seconds)
@@ -222,8 +221,8 @@ def _drag(information: float, weighted: float) -> tuple[float, float]:
 
 def _mean(values: Floats, weight: Floats) -> tuple[float, float]:
     mean = float(weight @ values)
-    step = float(values[1] - values[0])
-    return mean, math.sqrt(float(weight @ np.square(values - mean)) + step * step / 12.0)
+    step = values[1] - values[0]
+    return mean, math.sqrt((weight @ np.square(values - mean)) + step * step / 12.0)
 
 
 def _patterns(covariance: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
@@ -315,11 +314,11 @@ class _Misfit:
         """Add the noise of the sensor to spectra of the sway up to their level, (s, 2, f)."""
         if not self._noise:
             return shaped
-        total = float(self._power.sum())
+        total = self._power.sum()
         sway = max(total - self._noise * self._power.size, _LEAST_SWAY * total)
-        return np.asarray(shaped * (sway / shaped.sum(axis=(1, 2), keepdims=True)) + self._noise)
+        return shaped * (sway / shaped.sum(axis=(1, 2), keepdims=True)) + self._noise
 
-    def _motion(self, stiff: float, damping: Floats) -> Waves:
+    def _motion(self, stiff: float, damping: Floats) -> Complexes:
         """East and north motion of a candidate by each pattern, (2, patterns, f)."""
         w = self._circular
         stiffness = (stiff * self._stiffness)[:, None]
@@ -329,9 +328,9 @@ class _Misfit:
         by_eta = self._by_eta - (stiff - 1.0) * self._by_stiffer
         by_displacement = (by_eta @ parts).view(np.complex128)
         by_rate = (self._by_rate @ parts).view(np.complex128)
-        return np.asarray(by_displacement + 1j * w * by_rate + self._by_force)
+        return by_displacement + 1j * w * by_rate + self._by_force
 
-    def _powers(self, known: Waves) -> tuple[Floats, Floats, Floats]:
+    def _powers(self, known: Complexes) -> tuple[Floats, Floats, Floats]:
         """
         Return powers of the motion that was measured, of that expected, and what both share.
 

@@ -68,8 +68,6 @@ class UnknownMotion:
         self.forces: Disturbance | None = None
         """What the wind does not tell, in the wind of the last law; None before any."""
         self._law: SwayLaw | None = None
-        self.apart: SwayLaw | None = None
-        """The last law, had each limb gusts of its own; None before any."""
         self._variance: Floats | None = None
         self.air_damping = np.zeros(count)
         """Damping of each by the mean wind [1/s], (count,)."""
@@ -130,8 +128,8 @@ class UnknownMotion:
         """Power of the forces in the wind of `COMPARED` over that in the wind of the law."""
         return max(self._fourth, _SLOWEST_WIND**4) / self._found_for**4
 
-    def find(self) -> SwayLaw:
-        """Find the law in the present wind."""
+    def find(self) -> tuple[SwayLaw, SwayLaw]:
+        """Find the law in the present wind, and what it were if each limb had gusts of its own."""
         speed = max(self.mean_speed, _SLOWEST_WIND)
         self._found_for, n = speed, self.count
         heading = None
@@ -142,12 +140,12 @@ class UnknownMotion:
         self._found_with = (self.all_stiffness, self.all_damping)
         self.air_damping[:] = found.air_damping
         self.damped = self.all_damping[:n] + found.air_damping
-        self._law, self.apart = (
+        self._law, apart = (
             sway_law(self.stiffness, self.damped, each, found.time_constant, self.dt)
             for each in (found.covariance, found.apart)
         )
         self._variance = None
-        return self._law
+        return self._law, apart
 
     def present_forces(self, *, keeps_old: bool) -> Disturbance:
         """Return the unknown forces, those of an outdated law only if it is to be kept."""

@@ -99,21 +99,21 @@ def find_lag(
         other += _sums(np.square(wanted).sum(axis=1), -lags)
     values = np.linalg.svd(covariance, compute_uv=False).sum(axis=1)
     likeness = values / np.sqrt(np.maximum(own * other, 1e-300))
-    best = int(np.argmax(likeness))
+    best = np.argmax(likeness)
     apart = np.abs(lags - lags[best]) >= period
-    beside = float(likeness[apart].max()) if apart.any() else 0.0
-    present = float(likeness[np.searchsorted(lags, 0)])
-    return WindLag(int(lags[best]), float(likeness[best]), beside, present, period, n / period)
+    beside = likeness[apart].max(initial=0.0)
+    present = likeness[np.searchsorted(lags, 0)]
+    return WindLag(int(lags[best]), likeness[best], beside, present, period, n / period)
 
 
 def _of_size_one(rows: Floats) -> Floats:
     """Motion (n, 3) about its mean, over its root mean square."""
     beyond = rows - rows.mean(axis=0)
-    return np.asarray(beyond / max(float(beyond.std()), 1e-300))
+    return beyond / max(beyond.std(), 1e-300)
 
 
 def _sums(squares: Floats, lags: Ints) -> Floats:
     """Sum the squares (n,) of a motion that are compared with an earlier one, at each lag."""
     sums = np.concatenate([[0.0], np.cumsum(squares)])
     last = len(squares) - np.maximum(-lags, 0)
-    return np.asarray(sums[last] - sums[np.maximum(lags, 0)])
+    return sums[last] - sums[np.maximum(lags, 0)]

@@ -54,7 +54,9 @@ def page_controls(
         names = ('auto', *map(str, DIAL), 'branch', *installed_models(), choices.model)
         controls.append(replace(_of('model', choices.model), choices=_once(names)))
     controls += [_of('tolerance'), _of('damping_ratio')]
-    controls += [_of('gusts', choices.gusts), _away(choices.anemometer_distance)]
+    away = _of('anemometer_distance', choices.anemometer_distance)
+    farthest = max(_FARTHEST, choices.anemometer_distance)  # no farther than one can see
+    controls += [_of('gusts', choices.gusts), replace(away, maximum=farthest)]
     controls += _of_tree(choices)
     if is_one_tree:
         counts = _once((*_COUNTS, choices.count))
@@ -65,12 +67,6 @@ def page_controls(
 def _of(name: str, value: Value = None) -> Control:
     """Make the control of a parameter of the nodes."""
     return Control.of(SWAY[name], _LABELS[name], value)
-
-
-def _away(distance: float) -> Control:
-    """Make the control of how far the anemometer stands, and no farther than one can see [m]."""
-    control = _of('anemometer_distance', distance)
-    return replace(control, maximum=max(_FARTHEST, distance))
 
 
 def _once(names: Iterable[str]) -> tuple[str, ...]:

@@ -43,7 +43,7 @@ from tree_sway.page.commands.page_arguments import add_page_arguments, page_sett
 from tree_sway.page.commands.page_controls import page_controls
 from tree_sway.page.leaf_calendar import HALF_YEAR, is_bare, species_in_month, SUMMER
 from tree_sway.simulation import WindSource
-from tree_sway.stream import ControlPanel, Value
+from tree_sway.stream import ControlPanel, Json, Value
 
 _SPACING = 1.2
 """Distance of the trees of a stand over the greater of height and spread of one."""
@@ -131,7 +131,7 @@ def _serve(
         if not any(each.apply(name, value) for each in added):
             session.apply(name, value)
 
-    def status() -> dict[str, object]:
+    def status() -> Json:
         facts = {'Gusts': session.simulator.wind_told}
         for each in added:
             facts |= each.facts(session.simulator)

@@ -22,7 +22,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.twin.camera.pinhole import Camera, looking
-from tree_sway.twin.sensor_place import place_on
+from tree_sway.twin.sensor_place import place_on, point_at
 
 _CLICK = 2.0
 """Error of a click in pixels."""
@@ -114,14 +114,7 @@ def camera_of_clicks(
     if len(clicks) < 3:
         cure = 'click three or more: the foot of the stem, its top, and one between'
         raise ParameterError(f'{len(clicks)} clicked points', where='camera', cure=cure)
-    places = [place_on(tree, each.place) for each in clicks]
-    points = np.array(
-        [
-            tree.start[each.segment]
-            + each.along * (tree.end[each.segment] - tree.start[each.segment])
-            for each in places
-        ]
-    )
+    points = np.array([point_at(tree, place_on(tree, each.place)) for each in clicks])
     image = np.array([[each.x, each.y] for each in clicks])
     fit = _Fit(tree, size, points, image, told)
     bearings = [math.radians(told.bearing or 0.0)]
@@ -168,7 +161,7 @@ class _Fit:
         times_size, focal_error = _USUAL_FOCAL
         known = {
             'bearing': (0.0, 1e3),
-            'distance': (math.log(times_height * float(np.ptp(tree.end[:, 2]))), distance_error),
+            'distance': (math.log(times_height * np.ptp(tree.end[:, 2])), distance_error),
             'height': _USUAL_HEIGHT,
             'aside': (0.0, 0.5),
             'pitch': (0.0, 0.7),
@@ -200,6 +193,6 @@ class _Fit:
 
         first = self._mean.copy()
         first[0] = bearing
-        rise = float(self._points[:, 2].mean() - self._foot[2]) - first[2]
+        rise = self._points[:, 2].mean() - self._foot[2] - first[2]
         first[4] = math.atan2(rise, math.exp(first[1]))
         return least_squares(self._missed, first, x_scale=np.minimum(self._spread, 1.0))

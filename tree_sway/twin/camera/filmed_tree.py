@@ -201,8 +201,9 @@ class FilmedTree(ObservedTree):
             self._look(*self._waiting.popleft())
         if self.sees:
             ticks = max(round((self.now - self._filter_time) / TICK), 0)
+            ahead = self.filter.moved(self.filter.state, ticks)
             # What it tells takes the place of what sensors on the tree tell.
-            self._filmed[:] = self._calm(whole, dt, self.filter.ahead(ticks)) - sensed
+            self._filmed[:] = self._calm(whole, dt, ahead) - sensed
         else:
             self._filmed *= np.exp(-dt / _FADE)
         eta[:n] += self._filmed[0]
@@ -266,15 +267,16 @@ class FilmedTree(ObservedTree):
         if reference != self._reference:
             self._begin(self.camera, reference, poses, image)
         expected = self.camera.project(self.points.at(poses)) + self._offset
-        missed = image[self.points.row] - expected
+        seen = image[self.points.row]
+        missed = seen - expected
         if np.isfinite(missed).all(axis=1).sum() < _FEWEST:
             self.refused += 1
             return
         self._picture_rate += 0.1 * (1.0 / (time - self._seen_at) - self._picture_rate)
         self._seen_at = time
         self._note_behind(image[self._behind] - self._behind_at)
-        moved = np.square(image[self.points.row] - self._begun_at).sum(axis=1)
-        self._square += float(np.nanmedian(moved))
+        moved = np.square(seen - self._begun_at).sum(axis=1)
+        self._square += np.nanmedian(moved)
         self._n_seen += 1
         self.filter.see(self._slopes, np.einsum('pij,pj->pi', self._axes, missed))
 
@@ -290,7 +292,7 @@ class FilmedTree(ObservedTree):
             rows, at = np.array(self._shifts), np.linspace(-1.0, 1.0, n)
             # A cloud drifts evenly.
             left = rows - rows.mean(axis=0) - np.outer(at, at @ rows) / (at @ at)
-            found = float(np.sqrt(np.square(left[:, :2]).sum(axis=1).mean()))
+            found = np.sqrt(np.square(left[:, :2]).sum(axis=1).mean())
             self.shake *= _REMEMBERED
             if found > 2.0 * np.median(rows[:, 2]):
                 self.shake = max(self.shake, found)
@@ -311,17 +313,14 @@ class FilmedTree(ObservedTree):
         along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
         self._axes = np.stack([along, along[:, ::-1] * [-1.0, 1.0]], axis=1)
         self._slopes = self._axes @ seen @ found.slopes(self)[:, :, : self._n]
-        moves = self._usual_motion()
+        gusts = self._usual_covariance[: self._n, : self._n]
+        # In usual gusts, root mean square [px].
+        moves = np.sqrt(np.einsum('pij,jk,pik->p', self._slopes, gusts, self._slopes))
         still = found.row[moves < _STILL * moves.max(initial=0.0)]
         behind = points_behind(self.tree, poses, camera, image)
         self._behind = behind if len(behind) >= _FEWEST else still
         self._behind_at = image[self._behind]
         self.filter.begin(len(found.row))
-
-    def _usual_motion(self) -> Floats:
-        """Return how far each point moves in usual gusts, root mean square [px], (p,)."""
-        moves = self._usual_covariance[: self._n, : self._n]
-        return np.sqrt(np.einsum('pij,jk,pik->p', self._slopes, moves, self._slopes))
 
     def _computed(self, time: float) -> Floats:
         """Coordinates of the model at a time in [s], without the camera's correction, (m,)."""
@@ -331,7 +330,7 @@ class FilmedTree(ObservedTree):
             if each[0] <= time:
                 break
         share = (time - before[0]) / max(later[0] - before[0], 1e-9)
-        return np.asarray(before[1] + np.clip(share, 0.0, 1.0) * (later[1] - before[1]))
+        return before[1] + np.clip(share, 0.0, 1.0) * (later[1] - before[1])
 
     def _forget(self) -> None:
         """Begin anew from rest."""
@@ -391,7 +390,7 @@ class FilmedTree(ObservedTree):
                 f'; what is still moves by {self.shake:.1f} px: the camera shakes, and '
                 'that is taken for sway: use a tripod'
             )
-        if self._picture_rate < _FEW * float(self.frequencies(1)[0]):
+        if self._picture_rate < _FEW * self.frequencies(1)[0]:
             told += (
                 f'; {self._picture_rate:.0f} pictures a second are few: its sway is told roughly'
             )

@@ -93,7 +93,7 @@ def matched_points(
     start, end = ends_of_poses(poses, tree.length)
     wood = drawn_wood(camera, start, end, tree.base_diameter)
     depth = wood.depth
-    apart = _APART * float(np.ptp(end[:, 2]))
+    apart = _APART * np.ptp(end[:, 2])
     found = []
     for row, (share, gap) in enumerate(zip(*_nearest(wood, image), strict=True)):
         near = np.flatnonzero(gap < within)
@@ -101,17 +101,14 @@ def matched_points(
             continue
         places = start[near] + share[near, None] * (end[near] - start[near])
         covers = gap[near] < 0.5
-        best = int(np.argmin(np.where(covers, depth[near], gap[near] + 1e6)))
+        best = np.argmin(np.where(covers, depth[near], gap[near] + 1e6))
         if np.linalg.norm(places - places[best], axis=1).max() < apart + 2.0 * float(
             tree.base_diameter[near[best]]
         ):
-            segment = int(near[best])
-            found.append((segment, float(share[segment] * tree.length[segment]), row))
-    segments, away, rows = zip(*found, strict=True) if found else ((), (), ())
-    return LimbPoints(
-        np.array(segments, dtype=np.int64), np.array(away, dtype=float),
-        np.array(rows, dtype=np.int64),
-    )  # fmt: skip
+            segment = near[best]
+            found.append((segment, share[segment] * tree.length[segment], row))
+    segments, away, rows = np.array(found).reshape(-1, 3).T.copy()
+    return LimbPoints(segments.astype(np.int64), away, rows.astype(np.int64))
 
 
 def points_behind(tree: Tree, poses: Floats, camera: Camera, image: Floats) -> Ints:

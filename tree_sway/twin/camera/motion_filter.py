@@ -69,8 +69,6 @@ class MotionFilter:
         """Covariance of the state, (3 n, 3 n)."""
         self.errors = np.zeros((0, 2))
         """Error of each point in pixels along its limb and across it, (p, 2)."""
-        self.residuals = np.zeros((0, 2))
-        """How far each was from its place after the last picture, so too, in pixels, (p, 2)."""
         self.weights = np.zeros((0, 2))
         """Weights of each point in the last picture, so too, 0 to 1, (p, 2)."""
         self.strength = 1.0
@@ -105,20 +103,15 @@ class MotionFilter:
             self.covariance = blocks.reshape(3 * n, 3 * n)
             ticks -= some
 
-    def ahead(self, ticks: int) -> Floats:
-        """Displacement and rate some ticks later, (2, n)."""
-        return self.moved(self.state, ticks)
-
     def moved(self, state: Floats, ticks: int) -> Floats:
         """Displacement and rate some ticks after a state (3, n), (2, n)."""
         step, _ = self._several(min(ticks, _MOST_TICKS))
-        return np.asarray(np.einsum('ijn,jn->in', step[:2], state))
+        return np.einsum('ijn,jn->in', step[:2], state)
 
     def begin(self, n_points: int) -> None:
         """Follow other points."""
         self.errors = np.full((n_points, 2), _FIRST_NOISE)
         self.weights = np.zeros((n_points, 2))
-        self.residuals = np.full((n_points, 2), np.nan)
 
     def see(self, slopes: Floats, missed: Floats) -> None:
         """
@@ -145,7 +138,7 @@ class MotionFilter:
             allowed = expected + np.einsum('ij,ij->i', rows @ moves, rows)
             for _ in range(1 + _ROUNDS):
                 squares = np.square(left)
-                shares = _shares(squares, allowed)
+                shares = 1.0 / np.square(1.0 + squares / (_OUTLIER * _OUTLIER * allowed))
                 weighted = rows * (shares / (_JOINED * expected))[:, None]
                 told = rows.T @ weighted
                 towards = weighted.T @ apart
@@ -156,33 +149,20 @@ class MotionFilter:
             self.state += (across @ inner[:, 0]).reshape(3, n)
             self.covariance -= across @ inner[:, 1:] @ across.T
         self.covariance = 0.5 * (self.covariance + self.covariance.T)
-        self._follow_strength()
-        self.weights[:] = 0.0
-        self.weights[seen] = shares.reshape(-1, 2)
-        self.residuals[:] = np.nan
-        self.residuals[seen] = left.reshape(-1, 2)
-        followed = _followed(expected, squares)
-        self.errors[seen] = np.maximum(np.sqrt(followed), _NOISE).reshape(-1, 2)
-
-    def _follow_strength(self) -> None:
-        """Follow how strong the unknown forces are found to be."""
-        variance = np.diag(self.covariance)[2 * self.count :]
+        # The unknown forces are as strong as they are found to be.
+        variance = np.diag(self.covariance)[2 * n :]
         found = (np.square(self.state[2]) + variance) / self._usual
         self.strength += _STRENGTHENED * (float(found.mean()) - self.strength)
         self.strength = min(self.strength, _STRONGEST)
-
-
-def _shares(squares: Floats, allowed: Floats) -> Floats:
-    """Weights of measurements by the squares of their residuals over those that are allowed."""
-    return np.asarray(1.0 / np.square(1.0 + squares / (_OUTLIER * _OUTLIER * allowed)))
-
-
-def _followed(expected: Floats, squares: Floats) -> Floats:
-    """Variances that follow the squares of residuals; a far outlier is not a usual error."""
-    return expected + _FOLLOWED * (np.minimum(squares, 100.0 * expected) - expected)
+        self.weights[:] = 0.0
+        self.weights[seen] = shares.reshape(-1, 2)
+        # A far outlier is not a usual error.
+        beyond = np.minimum(squares, 100.0 * expected) - expected
+        followed = expected + _FOLLOWED * beyond
+        self.errors[seen] = np.maximum(np.sqrt(followed), _NOISE).reshape(-1, 2)
 
 
 def _moved(step: Floats, blocks: Floats) -> Floats:
     """Covariance (3, n, 3, n) after a step (3, 3, n)."""
     rows = np.einsum('ijn,jnkm->inkm', step, blocks)
-    return np.asarray(np.einsum('klm,inlm->inkm', step, rows))
+    return np.einsum('klm,inlm->inkm', step, rows)

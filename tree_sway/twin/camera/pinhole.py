@@ -45,18 +45,18 @@ class Camera(NamedTuple):
         """Places of points of the world (p, 3) in the picture, (p, 2); not a number behind it."""
         seen = (points - self.position) @ self.axes.T
         depth = np.where(seen[:, 2] > _NEAREST, seen[:, 2], np.nan)
-        return np.asarray(self.centre + self.focal * seen[:, :2] / depth[:, None])
+        return self.centre + self.focal * seen[:, :2] / depth[:, None]
 
     def depth(self, points: Floats) -> Floats:
         """How far ahead of the camera points (p, 3) are in [m], (p,)."""
-        return np.asarray((points - self.position) @ self.axes[2])
+        return (points - self.position) @ self.axes[2]
 
     def slopes(self, points: Floats) -> Floats:
         """Motion in the picture per motion of points (p, 3) in pixels per metre, (p, 2, 3)."""
         seen = (points - self.position) @ self.axes.T
         away = seen[:, :2, None] / seen[:, 2, None, None]
         across = self.axes[:2] - away * self.axes[2]
-        return np.asarray(self.focal * across / seen[:, 2, None, None])
+        return self.focal * across / seen[:, 2, None, None]
 
 
 def looking(bearing: float, pitch: float, roll: float) -> Floats:

@@ -52,11 +52,8 @@ def placed_camera(address: str, at: str, tree: Tree) -> PlacedCamera:
         OpenCV is not installed.
 
     """
-
-    def say_of_it(text: str) -> None:
-        say(f'{address}: {text}')
-
-    view = CameraView(tree, at, say_of_it, f'simulate --motion {address}')
+    command = f'simulate --motion {address}'
+    view = CameraView(tree, at, lambda text: say(f'{address}: {text}'), command)
     film = Film(address, late=view.told.late)
     return PlacedCamera(film, view.place(film.first), view)
 

@@ -14,7 +14,6 @@ from weakref import WeakKeyDictionary
 from tree_sway.commands import say
 from tree_sway.core.scene import Scene, Simulator
 from tree_sway.core.settings import model_of, Settings
-from tree_sway.core.tree import Tree
 from tree_sway.errors import FormatError, inside, ParameterError
 from tree_sway.files.commands import opened_scene
 from tree_sway.files.motion import refuse_no_history, TreeHistory
@@ -58,17 +57,17 @@ class SensorsOnThePage(PageAddition):
 
     def open(self, stack: ExitStack) -> None:  # noqa: A003
         """Listen to the sensors."""
-        film = stack.enter_context(filming(self.arguments, self._named_tree))
-        self.motion = stack.enter_context(sensing(self.arguments))
+        arguments = self.arguments
+        film = stack.enter_context(
+            filming(arguments, lambda: opened_scene(arguments).trees[0].placed())
+        )
+        self.motion = stack.enter_context(sensing(arguments))
         self.motion.film = film
         self.places = self.motion.places
-        if (path := self.arguments.history) is not None:
+        if (path := arguments.history) is not None:
             with inside('--history'):
                 refuse_no_history(path, list(self.places))
             self._history = TreeHistory(path, list(self.places))
-
-    def _named_tree(self) -> Tree:
-        return opened_scene(self.arguments).trees[0].placed()
 
     def controls(self) -> tuple[Control, ...]:
         """Make the control of where a single sensor sits."""
