@@ -41,7 +41,6 @@ FORMS = (
     'lobed',
     'palmate',
     'compound',
-    'pinnate',
     'digitate',
     'needles',
     'bunches',
