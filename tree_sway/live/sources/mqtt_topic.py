@@ -20,7 +20,7 @@ _Read = Callable[[Message], Readings]
 
 def open_source(address: SourceAddress) -> Source:
     """
-    Open a topic: ``mqtt://host/topic``, of JSON or of plain numbers.
+    Open a topic: ``mqtt://host/topic``, of JSON, of lines of instruments, or of plain numbers.
 
     ``field`` is the path of the speed, as ``speed``; ``direction_topic`` is that of a direction
     that comes by itself; ``user`` and ``password_file`` log in.
