@@ -34,7 +34,7 @@ import tree_sway
 ROOT = Path(__file__).resolve().parent.parent
 NODES = ('anemometer', 'player', 'sensor', 'solver', 'viewer', 'wind')
 IMPORTED = {'yaml': 'python3-yaml'}
-LOADED = {'rclpy.lifecycle': 'lifecycle_msgs', "import_module('serial')": 'python3-serial'}
+LOADED = {'rclpy.lifecycle': 'lifecycle_msgs'}
 """Packages that are loaded where the code has a text, without an import of their own."""
 
 
@@ -64,11 +64,10 @@ def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> No
         for p in (ROOT / folder).rglob('*.py')
     ]:
         for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
-            names = [alias.name for alias in getattr(node, 'names', [])]
             if isinstance(node, ast.ImportFrom):
-                names = [node.module or '']
-            if isinstance(node, ast.Import | ast.ImportFrom):
-                wanted |= {name.split('.')[0] for name in names}
+                wanted.add((node.module or '').split('.')[0])
+            elif isinstance(node, ast.Import):
+                wanted |= {alias.name.split('.')[0] for alias in node.names}
     wanted -= set(sys.stdlib_module_names) | {'tree_sway', 'tree_sway_ros', '', *OPTIONAL}
     missing = {
         name

@@ -219,7 +219,11 @@ def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
         ('log.csv', '!Boat,Utc,TWS\n!boat,0,5\n0,45858.5,5,12.1\n', 'pairs of the number'),
         ('a.log', 'FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n', 'of ArduPilot'),
         ('o.sto', 'DataRate=100.0\nDataType=Quaternion\nversion=3\n', 'the cells of OpenSim'),
-        ('walk.gpx', '<?xml version="1.0"?>\n<gpx creator="x">\n', 'a track of places'),
+        (
+            'walk.gpx',
+            '<?xml version="1.0"?>\n<gpx creator="x">\n',
+            'without the motion of a sensor',
+        ),
         (
             'ACC.csv',
             '1791021600.0, 1791021600.0, 1791021600.0\n32.0, 32.0, 32.0\n-12,36,54\n',
