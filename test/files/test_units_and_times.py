@@ -209,6 +209,10 @@ SPEEDS = 'wind speed (m/s),wind dir (deg)\n'
         ('Utc offset: +0930\n', 'time', 9.5),
         ('Time zone: 47\n', 'time', 0.0),
         ('POSIX name: Etc/GMT+5\n', 'time', 0.0),
+        ('Time zone of the logger: see note 3\n', 'time', 0.0),
+        ('Time zone: Europe/Berlin\n', 'Timestamp (UTC)', 0.0),
+        ('Time zone: Europe/Berlin\n', 'time_utc', 0.0),
+        ('Time zone offset (hours): 2\n', 'time', 2.0),
     ],
 )
 def test_a_zone_that_a_table_tells_counts(
@@ -223,13 +227,16 @@ def test_a_zone_that_a_table_tells_counts(
     assert any('on the clock of' in note for note in record.notes) == (ahead != 0.0)
 
 
-@pytest.mark.parametrize('zone', ['+02:00', '7200', 'Europe/Berlin', 'CEST', '2'])
-def test_a_column_of_zones_counts(tmp_path: Path, zone: str) -> None:
+@pytest.mark.parametrize(
+    ('zone', 'ahead'),
+    [('+02:00', 2), ('7200', 2), ('Europe/Berlin', 2), ('CEST', 2), ('2', 2), ('UTC', 0), ('', 0)],
+)
+def test_a_column_of_zones_counts(tmp_path: Path, zone: str, ahead: int) -> None:
     rows = ''.join(f'2024-07-15 0{n}:00,{zone},3.{n},220\n' for n in range(3))
     path = tmp_path / 'wind.csv'
     path.write_text(f'time,timezone,{SPEEDS}{rows}', encoding='utf-8')
     record = read_wind(path, turbulence=False)
-    assert record.epoch == 1720994400.0
+    assert record.epoch == 1721001600.0 - 3600.0 * ahead
 
 
 @pytest.mark.parametrize('own', ['Z', '+00:00'])

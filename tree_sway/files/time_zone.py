@@ -23,11 +23,11 @@ from tree_sway.files.time_stamps import Times
 _AREAS = 'Africa|America|Asia|Atlantic|Australia|Europe|Indian|Pacific'
 _SIZE = r'\d+(?:[.:]\d+)?'
 _ANYWHERE = rf'\b((?:{_AREAS})/[\w/]+)|(?<![\w/])(?:UTC|GMT) ?\(?([-+]{_SIZE})'
-_LETTERS = rf'\b({"|".join(ZONES)})\b'
-_IN_NAME = re.compile(f'{_ANYWHERE}|{_LETTERS}')
+_LETTERS = rf'(?<![^\W_])({"|".join(ZONES)})(?![^\W_]|\s?[-+]\d)'
+_IN_NAME = re.compile(f'{_ANYWHERE}|{_LETTERS}|((?i:utc|gmt|zulu))')
 _TOLD = re.compile(
-    rf'{_ANYWHERE}|(?:time.?zone|utc.?offset|zeitzone)\D{{0,20}}?(?:{_LETTERS}|([-+]?{_SIZE}))'
-    rf'|^LOCATION,(?:[^,]*,){{7}} *([-+]?{_SIZE})',
+    rf'{_ANYWHERE}|(?:time.?zone|utc.?offset|zeitzone)[\s_a-z()]{{0,20}}[:=,;]\s*"?'
+    rf'(?:{_LETTERS}|([-+]?{_SIZE}))|^LOCATION,(?:[^,]*,){{7}} *([-+]?{_SIZE})',
     re.IGNORECASE,
 )
 """The last is that of the weather of EnergyPlus, in hours."""
