@@ -699,6 +699,24 @@ def test_a_zip_has_a_tree_in_each_file(tmp_path: Path) -> None:
     assert any('1 dead or gone' in note for note in scene.notes)
 
 
+def test_a_zip_has_lists_of_trees_beside_other_files(tmp_path: Path) -> None:
+    path = tmp_path / 'trees.zip'
+    with ZipFile(path, 'w') as archive:
+        archive.writestr('LICENSE.txt', 'CC BY 4.0')
+        for part in ('north', 'south'):
+            trees = [
+                {
+                    'type': 'Feature',
+                    'properties': {'species': 'Fagus sylvatica', 'height_m': 20.0 + number},
+                    'geometry': {'type': 'Point', 'coordinates': [8.7 + 1e-4 * number, 49.0]},
+                }
+                for number in range(3)
+            ]
+            document = {'type': 'FeatureCollection', 'features': trees}
+            archive.writestr(f'{part}.geojson', dumps(document))
+    assert len(open_scene(path, warn=False).trees) == 6
+
+
 def test_a_zip_without_a_table_names_what_is_in_it(tmp_path: Path) -> None:
     path = tmp_path / 'export.zip'
     with ZipFile(path, 'w') as archive:

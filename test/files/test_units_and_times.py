@@ -210,6 +210,14 @@ SPEEDS = 'wind speed (m/s),wind dir (deg)\n'
         ('Time zone: 47\n', 'time', 0.0),
         ('POSIX name: Etc/GMT+5\n', 'time', 0.0),
         ('Time zone of the logger: see note 3\n', 'time', 0.0),
+        ('All times in local time zone, 10-min means\n', 'time', 0.0),
+        ('Local time zone; 5 minute averages\n', 'time', 0.0),
+        ('Created: 2024-06-01T12:00 GMT+0200\n', 'time', 0.0),
+        ('Region: Asia/Pacific\nTime zone: 8\n', 'time', 8.0),
+        ('Time zone: 10.5\n', 'time', 10.5),
+        ('Time zone: 5.75 h\n', 'time', 5.75),
+        ('Time zone: ACDT\n', 'time', 10.5),
+        ('Time zone,-3\n', 'time', -3.0),
         ('Time zone: Europe/Berlin\n', 'Timestamp (UTC)', 0.0),
         ('Time zone: Europe/Berlin\n', 'time_utc', 0.0),
         ('Time zone offset (hours): 2\n', 'time', 2.0),
@@ -253,12 +261,24 @@ def test_times_with_a_zone_keep_it(tmp_path: Path, own: str) -> None:
     assert read_wind(path, turbulence=False).epoch == 1721001600.0 - 7200.0
 
 
-def test_a_zone_that_is_not_known_is_said(tmp_path: Path) -> None:
+@pytest.mark.parametrize('zone', ['Europe/Atlantis', 'America/Argentina', 'Asia/mast2'])
+def test_a_zone_that_is_not_known_is_said(tmp_path: Path, zone: str) -> None:
     path = tmp_path / 'wind.csv'
-    path.write_text(f'time (Europe/Atlantis),{SPEEDS}{HOURS}', encoding='utf-8')
+    for text in (f'time ({zone}),', f'of /data/{zone}.csv\ntime,'):
+        path.write_text(f'{text}{SPEEDS}{HOURS}', encoding='utf-8')
+        record = read_wind(path, turbulence=False)
+        assert record.epoch == 1721001600.0
+        assert any(f'zone {zone} is not known here' in note for note in record.notes)
+
+
+def test_times_of_several_zones_are_left(tmp_path: Path) -> None:
+    path = tmp_path / 'wind.csv'
+    zones = ('CEST', 'CEST', 'CET')
+    rows = ''.join(f'2024-10-27 0{n}:00,{zone},3,220\n' for n, zone in enumerate(zones))
+    path.write_text(f'time,timezone,{SPEEDS}{rows}', encoding='utf-8')
     record = read_wind(path, turbulence=False)
-    assert record.epoch == 1721001600.0
-    assert any('zone Europe/Atlantis is not known here' in note for note in record.notes)
+    assert record.epoch == 1729987200.0
+    assert any('is not known here; times are left' in note for note in record.notes)
 
 
 @pytest.mark.parametrize('system', ['UTM32', 'EPSG:25832', 'Gauß-Krüger, Zone 3', 'm'])

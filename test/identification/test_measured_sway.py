@@ -169,6 +169,16 @@ def test_the_noise_of_an_accelerometer_is_no_sway(seed):
     assert found == pytest.approx(0.4, rel=0.1)
 
 
+def test_the_frequency_of_a_record_of_minutes_is_given_too():
+    found = []
+    for seed in range(8):
+        with pytest.raises(FormatError) as refusal:
+            estimate_sway(*in_wind(0.4, duration=300.0, seed=seed))
+        found += map(float, re.findall(r'(?:clearest at|near) ([\d.]+) Hz', refusal.value.what))
+    assert len(found) >= 6  # others are refused for the swing that they look like
+    assert np.median(np.abs(np.array(found) - 0.4)) < 0.04
+
+
 def test_a_gap_and_a_slow_sensor_are_named():
     time, motion = release()
     kept = (time < 6.0) | (time > 7.0)

@@ -71,7 +71,7 @@ _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
 _SCALED = re.compile(r'(\d+(?:\.\d+)?(?:e[-+]\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
-_MAP = re.compile('UTM|ETRS|EPSG|WGS|GK|LV|RD|OSGB|SWEREF|Lambert|Gau(ß|ss)', re.IGNORECASE)
+_MAP = re.compile(r'(UTM|ETRS|EPSG|WGS|GK|LV|RD|OSGB|SWEREF|Lambert|Gau(ß|ss).?Kr)', re.IGNORECASE)
 """System of places on a map, in brackets behind one of them: it is no unit."""
 _IN_BRACKETS = re.compile(r'(?:[\[(]|\s-\s)([xyzXYZ])(?:[\])]|(?=\s|$))')
 """Axis in brackets or behind a sign, as in ``Acceleration - x (m/s²)``."""
@@ -197,7 +197,8 @@ def name_and_unit(column: str, kind: str) -> tuple[str, str]:
         if unit_known(kind, unit):
             return name, unit
     if in_brackets:
-        return name, '' if _MAP.match(in_brackets[0]) else in_brackets[0]
+        is_map = kind == 'length' and _MAP.match(in_brackets[0])
+        return name, '' if is_map else in_brackets[0]
     return text, ''
 
 

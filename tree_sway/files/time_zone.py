@@ -22,12 +22,13 @@ from tree_sway.files.time_stamps import Times
 
 _AREAS = 'Africa|America|Asia|Atlantic|Australia|Europe|Indian|Pacific'
 _SIZE = r'\d+(?:[.:]\d+)?'
-_ANYWHERE = rf'\b((?:{_AREAS})/[\w/]+)|(?<![\w/])(?:UTC|GMT) ?\(?([-+]{_SIZE})'
+_ANYWHERE = rf'\b((?:{_AREAS})/[\w/]+)|(?<![\w/])(?<!\d )(?:UTC|GMT) ?\(?([-+]{_SIZE})'
 _LETTERS = rf'(?<![^\W_])({"|".join(ZONES)})(?![^\W_]|\s?[-+]\d)'
 _IN_NAME = re.compile(f'{_ANYWHERE}|{_LETTERS}|((?i:utc|gmt|zulu))')
 _TOLD = re.compile(
-    rf'{_ANYWHERE}|(?:time.?zone|utc.?offset|zeitzone)[\s_a-z()]{{0,20}}[:=,;]\s*"?'
-    rf'(?:{_LETTERS}|([-+]?{_SIZE}))|^LOCATION,(?:[^,]*,){{7}} *([-+]?{_SIZE})',
+    rf'{_ANYWHERE}|(?:time.?zone|utc.?offset|zeitzone)(?:[\s_a-z()]{{0,20}}[:=]|\s*[,;])\s*"?'
+    rf'(?:{_LETTERS}|([-+]?{_SIZE})(?=\s*(?:h|hours?|s)?\s*(?:[,;")]|$)))'
+    rf'|^LOCATION,(?:[^,]*,){{7}} *([-+]?{_SIZE})',
     re.IGNORECASE,
 )
 """The last is that of the weather of EnergyPlus, in hours."""
@@ -39,7 +40,8 @@ _FARTHEST = 14.0
 
 def in_utc(table: TextTable, columns: Sequence[int], times: Times) -> Times:
     """Return dates of columns in UTC, if their table says on the clock of which zone they are."""
-    name = next(filter(None, _told(table, columns)), '')
+    told = [each for each in _told(table, columns) if each]
+    name = next((each for each in told if _zone_of(each)), ''.join(told[:1]))
     zone = _zone_of(name)
     if not name or zone == timezone.utc:
         return times
@@ -54,7 +56,8 @@ def _told(table: TextTable, columns: Sequence[int]) -> Iterator[str]:
     """Yield the zones that a table tells, and empty texts."""
     yield _first(_IN_NAME, ' '.join(table.columns[each] for each in columns))
     for index in table.find_all('time_zone')[:1]:
-        yield _first(_TOLD, f'time zone: {table.cells(index, [0])[0]}')
+        zones = sorted({*table.cells(index, table.rows)} - {''})
+        yield _first(_TOLD, f'time zone: {zones[0]}') if len(zones) == 1 else ' and '.join(zones)
     for line in table.above:
         yield _first(_TOLD, line)
 
@@ -67,20 +70,20 @@ def _first(form: re.Pattern[str], text: str) -> str:
 def _zone_of(name: str) -> tzinfo | None:
     """Return a zone by its name, its letters, or how far it is ahead of UTC; None for another."""
     text = str(ZONES.get(name.upper(), name))
-    if text[-1:].isdigit():
+    if re.fullmatch(f'[-+]?{_SIZE}', text):
         ahead = _seconds(text)
         is_one = ahead % _QUARTER == 0.0 and abs(ahead) <= 3600.0 * _FARTHEST
         return timezone(timedelta(seconds=ahead)) if is_one else None
     try:
         return ZoneInfo(name)
-    except (ZoneInfoNotFoundError, ValueError):
+    except (ZoneInfoNotFoundError, ValueError, OSError):
         return None
 
 
 def _seconds(text: str) -> float:
     """Read an offset: ``+02:00``, ``-0330``, hours such as ``5.5``, or larger numbers of [s]."""
     hours, _, minutes = text.lstrip('+-').partition(':')
-    if len(hours) == 4 and float(hours[:2]) <= _FARTHEST:
+    if len(hours) == 4 and hours.isdecimal() and float(hours[:2]) <= _FARTHEST:
         hours, minutes = hours[:2], hours[2:]
     size = float(hours)
     seconds = size if size > _FARTHEST else 3600.0 * size + 60.0 * float(minutes or 0.0)

@@ -83,7 +83,7 @@ def _clearest(even: Floats, dt: float, band: tuple[float, float] | None) -> floa
     As it is compared on a scale of logarithms, it is the same of a displacement and of the
     acceleration, whose noise is largest at other ends of the spectrum.
     """
-    frequency, power = signal.welch(even, 1.0 / dt, nperseg=min(len(even), 4096), axis=0)
+    frequency, power = signal.welch(even, 1.0 / dt, nperseg=min(len(even) // 4, 4096), axis=0)
     lowest, highest = band or (0.0, np.inf)
     is_wanted = (frequency > lowest) & (frequency < highest)
     levels = np.log(power.sum(axis=1)[is_wanted] + np.finfo(float).tiny)

@@ -45,6 +45,8 @@ _LASTS = 3.0
 _QUEUE = 4096
 _OLDEST = 1.0
 """Age of the oldest sample that a run is given [s]."""
+_BUNDLE = 0.02
+"""Three times the time between samples [s] below which they may have come in a bundle."""
 _LEAST, _LIVE_FOR = 2.0, 10.0
 """Least age [s] up to which the wind of an instant counts as live: of even samples, of others."""
 _POINTS = 'N NE E SE S SW W NW'.split()
@@ -222,7 +224,7 @@ class LiveWind(LiveSource):
                 self._expires = now - self.age + (self._source.lasts or _LASTS * interval)
             else:
                 lasts = _LASTS * (period or 0.0)
-                is_even = max(self._gaps, default=_LIVE_FOR) <= lasts
+                is_even = lasts > _BUNDLE and max(self._gaps, default=_LIVE_FOR) <= lasts
                 self._expires = now + max(_LEAST if is_even else _LIVE_FOR, lasts)
         self._heard(reading)
         if is_first:

@@ -36,6 +36,8 @@ PATIENCE = 10
 """Number of ticks that may fail one after another before the thread gives up."""
 _BACK = 100_000_000
 _WINDOW = 600
+_APART = 50_000_000
+"""Time that may pass between the readings of two clocks [ns]."""
 
 
 class Tick(NamedTuple):
@@ -188,10 +190,10 @@ class Pacer(Worker):
             longest = round(self.clock_rate.largest_factor * (LONGEST_STEP + since))
         most = max(1, longest // self.period)
         if not self.is_simulated:
-            # What a wall clock that was set forward adds is not skipped. The clocks are read one
-            # after the other, so that they differ by what came between.
+            # What a wall clock that was set forward adds is not skipped.
             jumped = periods * self.period > passed + LONGEST_STEP
-            self._skipped += (max(1, round(passed / self.period)) if jumped else periods) - 1
+            elapsed = passed if jumped else passed + _APART
+            self._skipped += min(periods, max(1, round(elapsed / self.period))) - 1
             self._clamped += jumped
         elif periods > most:
             self._clamped += 1

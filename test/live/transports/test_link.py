@@ -41,20 +41,22 @@ def test_a_connection_that_falls_silent_is_made_again(hear, server):
 def test_a_port_that_is_silent_is_told_of_once_and_hears_again(hear, udp_port):
     """It is opened again and again, at once each time."""
     heard = hear(Udp('127.0.0.1', udp_port), silence=0.05)
-    heard.until(lambda: heard.link.connections >= 6)
+    address = f'udp://127.0.0.1:{udp_port}'
+    heard.until(lambda: heard.link.is_up)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        sender.sendto(b'first', ('127.0.0.1', udp_port))
+        heard.until(lambda: heard.data == [b'first'])
+        connections = heard.link.connections
+        heard.until(lambda: heard.link.connections >= connections + 20)
 
         def sent():
             sender.sendto(b'again', ('127.0.0.1', udp_port))
-            return heard.data
+            return len(heard.data) > 1
 
         heard.until(sent)
-    address = f'udp://127.0.0.1:{udp_port}'
-    assert heard.said[:3] == [
-        f'listening to {address}',
-        f'{address}: nothing for 0.05 s; trying again',
-        f'{address}: messages come again',
-    ]
+    assert f'{address}: messages come again' in heard.said
+    silent = f'{address}: nothing for 0.05 s; trying again'
+    assert 1 <= heard.said.count(silent) <= 3  # before the first message, after it, at the end
 
 
 def test_nobody_there_is_said_once_and_tried_again(hear, server):

@@ -99,7 +99,8 @@ class Link(Worker):
         self.messages += 1
         if self._is_quiet:
             self._is_quiet = False
-            self.log(f'{self.transport}: messages come again')
+            if self.messages > 1:
+                self.log(f'{self.transport}: messages come again')
         if self.admits(message):
             if self._pace.admits(len(message.data)):
                 self.take(message)
@@ -147,6 +148,6 @@ class Link(Worker):
             self.is_up = False
             self.failure = why
             self._is_quiet = is_silent
-            has_data = self.messages > before
-            pause = self.first_pause if has_data else min(2.0 * pause, self.longest_pause)
+            was_there = is_silent or self.messages > before
+            pause = self.first_pause if was_there else min(2.0 * pause, self.longest_pause)
             self._stopping.wait(0.0 if is_silent else pause)

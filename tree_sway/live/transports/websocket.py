@@ -45,4 +45,6 @@ class WebSocket(LoopTransport):
             async for message in socket:
                 if message.type is aiohttp.WSMsgType.TEXT:
                     receiver.deliver(Message(message.data.encode()))
+                elif message.type is aiohttp.WSMsgType.BINARY:
+                    receiver.deliver(Message(message.data))
             raise ConnectionError('closed by the other side')

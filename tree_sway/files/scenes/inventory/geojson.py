@@ -14,6 +14,7 @@ from collections.abc import Iterator
 import json
 from pathlib import Path
 import re
+from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
@@ -28,6 +29,8 @@ _PROPERTIES = ('properties', 'attributes', 'fields', 'tags')
 _BEGINS = re.compile(
     rf'\s*\{{.*"({"|".join(_LISTS)}|Feature(Collection)?|geometryType)"', re.DOTALL
 )
+_IS_JSON = re.compile(r'\s*[{\[]')
+_HEAD = 9
 _IS_WIND = re.compile(r'"wind_?(speed|dir)', re.IGNORECASE)
 _MERCATOR = re.compile(r'\b(3857|102100|900913)\b')
 """Numbers of the system of maps on the web, whose metres are longer than those of the ground."""
@@ -46,20 +49,20 @@ def read_geojson(path: Path) -> TextTable:
 
     Raises a `FormatError` for broken JSON, no records, or features of which none has a place.
     """
-    documents = [document_of(lines, 'GeoJSON') for _, lines in tables_in(path)]
-    whole = documents if len(documents) > 1 else documents[0]
-    document = {'records': whole} if isinstance(whole, list) else object_of(whole)
-    inner = object_of(document.get('result')) or document
-    listed = next((name for name in _LISTS if name in inner), '')
-    found = list_of(inner[listed]) if listed else [inner]
-    records = [dict(_cells(record)) for record in map(object_of, found)]
+    texts = [lines for _, lines in tables_in(path) if _IS_JSON.match('\n'.join(lines[:_HEAD]))]
+    documents = [document_of(lines, 'GeoJSON') for lines in texts]
+    parts = [*map(_listed, documents)]
+    listed = parts[0][0] if parts else ''
+    found = [object_of(record) for _, part in parts for record in part]
+    records = [dict(_cells(record)) for record in found]
     if listed == 'elements':  # those of ways and relations have no tags
         tagged = [each for each in records if any(name.startswith('tags.') for name in each)]
         records = [each for each in tagged if each.get('tags.natural') == 'tree'] or tagged
     if not any(records):
         raise FormatError('no features', cure='export points with properties')
-    system = document.get('spatialReference', document.get('crs'))
-    if _MERCATOR.search(str(system)):
+    heads = map(object_of, documents)
+    systems = [each.get('spatialReference', each.get('crs')) for each in heads]
+    if _MERCATOR.search(str(systems)):
         raise FormatError(
             'places in the Web Mercator of maps, which is not in metres of the ground',
             cure='export degrees, as by outSR=4326 in ArcGIS',
@@ -72,6 +75,15 @@ def read_geojson(path: Path) -> TextTable:
         )
     rows = [[record.get(name, '') for name in names] for record in records]
     return table_of_cells(names, rows, str(path), row_name='feature')
+
+
+def _listed(document: Any) -> tuple[str, list[Any]]:
+    """Return the name of the list of records in a document, and these; it may be one itself."""
+    if isinstance(document, list):
+        return 'records', document
+    inner = object_of(object_of(document).get('result')) or object_of(document)
+    listed = next((name for name in _LISTS if name in inner), '')
+    return listed, list_of(inner[listed]) if listed else [inner]
 
 
 def _cells(record: Record) -> Iterator[tuple[str, str]]:

@@ -20,6 +20,8 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.files.zipped import table_in
 
 _HEAD = 60
+_LONGEST = 65_536
+"""Characters of the beginning of a file in a zip that are looked at."""
 _NAME = re.compile(r'"([^"\n]{1,60})"\s*:')
 SPECIES = 'the species'
 
@@ -41,8 +43,9 @@ def has_own_format(path: Path, head: str) -> bool:
 
 
 def _head_in(path: Path) -> str:
-    """Return the table in a zip that is most like an inventory."""
-    return '\n'.join(table_in(path, _is_inventory)[1])
+    """Return the beginning of the table in a zip that is most like an inventory."""
+    _, lines = table_in(path, lambda head: looks_like_geojson(head) or _is_inventory(head))
+    return '\n'.join(lines[:_HEAD])[:_LONGEST]
 
 
 def _own_reader(path: Path, head: str) -> Callable[[Path], TextTable] | None:
