@@ -93,6 +93,8 @@ def _seconds(text: str) -> float:
 def _moved(times: Times, zone: tzinfo) -> Times:
     """Return times on the clock of a zone as those of UTC."""
     epoch = times.epoch or 0.0
+    if (fixed := zone.utcoffset(None)) is not None:  # without summer time
+        return times._replace(epoch=epoch - fixed.total_seconds())
     begin = datetime(1970, 1, 1, tzinfo=zone) + timedelta(seconds=epoch)
     passed = [0.0, *np.nan_to_num(times.seconds).tolist()]
     moments = (begin + timedelta(seconds=each) for each in passed)
