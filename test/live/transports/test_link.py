@@ -56,7 +56,8 @@ def test_a_port_that_is_silent_is_told_of_once_and_hears_again(hear, udp_port):
         heard.until(sent)
     assert f'{address}: messages come again' in heard.said
     silent = f'{address}: nothing for 0.05 s; trying again'
-    assert 1 <= heard.said.count(silent) <= 3  # before the first message, after it, at the end
+    # Once after each message, however often it is opened again.
+    assert 0 < heard.said.count(silent) < heard.link.connections / 2
 
 
 def test_nobody_there_is_said_once_and_tried_again(hear, server):
