@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+import json
 from pathlib import Path
 import re
 from tempfile import TemporaryDirectory
@@ -299,3 +300,14 @@ def test_every_code_is_a_species(list_name: str) -> None:
     for code, name in names_of(list_name).items():
         assert name_of(f'{code:03d}', list_name) == name
         assert species_like(name)[0].key
+
+
+def test_no_key_occurs_twice() -> None:
+    """Of two a reader of JSON takes the last, without a word."""
+
+    def once(pairs: list[tuple[str, object]]) -> dict[str, object]:
+        assert len(dict(pairs)) == len(pairs), [key for key, _ in pairs]
+        return dict(pairs)
+
+    text = (ROOT / 'columns.json').read_text('utf-8')
+    assert json.loads(text, object_pairs_hook=once)

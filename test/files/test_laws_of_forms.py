@@ -229,6 +229,8 @@ def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
             '1791021600.0, 1791021600.0, 1791021600.0\n32.0, 32.0, 32.0\n-12,36,54\n',
             'counts of 1/64 g',
         ),
+        ('a.ASC', 'EVENT_NAME: NORCIA\nEVENT_ID: 1\nDATE: 20261030\n', 'as of ESM and ITACA'),
+        ('a.pos', '% program   : RTKPOST ver.2.4.3\n% obs start : 2026\n', 'of RTKLIB'),
         ('take.csv', 'Format Version,1.23,Take Name,pull\n', 'a take of OptiTrack Motive'),
         ('a.mnd', 'FORMAT-1\n2024-03-05 00:00:00 0\nSFAS\n', 'profiles of a sodar in blocks'),
     ],

@@ -234,7 +234,7 @@ def test_winds_are_read_as_they_say(
     assert not any('taken in m/s' in note for note in record.notes)
 
 
-@pytest.mark.parametrize('name', ['station', 'Station Name', 'NUM_POSTE'])
+@pytest.mark.parametrize('name', ['station', 'Station Name', 'NUM_POSTE', 'fields.Reference'])
 def test_stations_are_not_mixed(tmp_path: Path, name: str) -> None:
     rows = [f'{"AB"[row % 2]},2024-03-05 14:{row:02d},{row + 1},90' for row in range(ROWS)]
     path = written(tmp_path, f'{name},time,speed [m/s],direction\n' + '\n'.join(rows))
@@ -354,6 +354,7 @@ def test_the_first_of_columns_of_one_name_is_said(tmp_path: Path) -> None:
         ('time,speed,direction\nnow,3,90\n', 'a.csv', 'no time in it'),
         ('date,clock,speed,dir\n' + '2024-03-05,14:00,3,9\n' * 9, 'a.csv', 'stands or goes back'),
         ('{"SiteRep": {"Wx": {}}}', 'a.json', 'DataPoint'),
+        ('{"20261009060000":{"prefNumber":44,"wind":[3.5,0]}}', 'a.json', 'of AMeDAS'),
         ('netcdf a {\nvariables:\n}\n', 'a.txt', 'netCDF file as text'),
         ('Mast 1\n 50.0 8.0 10.0\n 12 1.00 0\n', 'a.tab', 'a table of frequencies'),
         ('M:x =   335 y =   218 z =     5 t =  2203\n' * 3, 'a.csv', 'axes are left-handed'),

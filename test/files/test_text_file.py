@@ -50,6 +50,7 @@ def test_all_else_is_none(text):
         ('Ulice;ÀÁÂÃ;È±°¿ Ærø à côté', 'cp1252'),
         ('番号,樹種\n1,ケヤキ\n', 'cp932'),
         ('지점,풍속(m/s)\n', 'cp949'),
+        ('小时,温度,风力方向,风级\n东南风,西北风\n', 'gb18030'),
     ],
 )
 def test_the_code_page_is_told_by_the_text(text, page):

@@ -16,6 +16,8 @@ from tree_sway.files.text_file import finite
 from tree_sway.files.time_stamps import dates, lacks_zone, TIME_OF_DAY, Times, times_of, unwrapped
 from tree_sway.files.time_zone import in_utc
 
+Clock = tuple[list[int], str, float]
+"""Columns of the time, the form of several, and the factor to [s]."""
 PARTS = {tuple(names.split()): form for names, form in TIME_PARTS.items()}
 """Columns that make a time together, and the form of a date or of seconds with all of them."""
 _LOOKED_AT = 20
@@ -29,7 +31,7 @@ _RATE = re.compile(
 _MIDNIGHT = re.compile('[T ]00:')
 
 
-def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
+def time_columns(table: TextTable) -> Clock | None:
     """Columns of the time, the form of several, and the factor to [s]; None without a time."""
     names = [folded(name_and_unit(column, 'time')[0]) for column in table.columns]
     for wanted, form in PARTS.items():
@@ -55,6 +57,27 @@ def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
         return [clocks[0]], '', 1.0
     unit = table.unit_of(clocks[0], 'time') or maker_of(table).get('time')
     return [clocks[0]], '', table.known_factor('time', unit) if unit else 1.0
+
+
+def by_own_clock(
+    table: TextTable, clock: Clock, columns: Sequence[int]
+) -> tuple[TextTable, Clock]:
+    """
+    Return the rows of some channels of those that have times of their own, and these times.
+
+    They are in the last column before each one of those of the name of the clock. A `FormatError`
+    refuses channels whose times differ.
+    """
+    name = table.columns[clock[0][0]]
+    clocks = [index for index, each in enumerate(table.columns) if each == name]
+    if len(clocks) < 2 or not columns:
+        return table, clock
+    own = sorted({max([clocks[0], *filter(column.__gt__, clocks)]) for column in columns})
+    part = table.part(row for row, cell in enumerate(table.cells(own[0], table.rows)) if cell)
+    times = [part.cells(each, part.rows) for each in own]
+    if times.count(times[0]) < len(times):
+        raise part.error(f"several times '{name}', which differ", cure='keep one, and its columns')
+    return part, (own[:1], *clock[1:])
 
 
 def counted_times(table: TextTable) -> Times | None:

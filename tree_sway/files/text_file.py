@@ -85,8 +85,8 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
     """
     Return bytes as text: UTF-16 or UTF-32, UTF-8, else a code page of Windows.
 
-    That is the first of `_PAGES` in which nearly all letters are usual ones and two are side by
-    side, else 1250 or 1252; a spreadsheet writes CSV in these.
+    That is the one of `_PAGES` in which most letters, and nearly all, are usual ones, the first of
+    several, else 1250 or 1252; a spreadsheet writes CSV in these.
     ``errors`` is for bytes that are none of them.
     """
     for encoding, marks in _MARKS.items():
@@ -105,22 +105,25 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
         if is_cut or b'\0' in data:
             return data.removeprefix(b'\xef\xbb\xbf').decode('utf-8', errors)
         begin = data.rfind(b'\n', 0, error.start) + 1
+    shares = dict.fromkeys(_PAGES, 0.0)
     for page, usual in _PAGES.items():
         with suppress(UnicodeDecodeError):
-            if _is_of_page(data[begin : begin + _SAMPLE], page, usual):
-                return data.decode(page, errors)
+            shares[page] = _usual_share(data[begin : begin + _SAMPLE], page, usual)
+    page = max(shares, key=shares.__getitem__)
+    if shares[page] >= _USUAL:
+        return data.decode(page, errors)
     western = data[begin : begin + _SAMPLE].decode('cp1252', 'replace')
     return data.decode('cp1250' if _CENTRAL.search(western) else 'cp1252', errors)
 
 
-def _is_of_page(data: bytes, page: str, usual: bytes) -> bool:
-    """Whether nearly all letters beyond ASCII are usual ones of a page, and two side by side."""
+def _usual_share(data: bytes, page: str, usual: bytes) -> float:
+    """Share of usual ones of a page in letters beyond ASCII; 0 where none are side by side."""
     text = getincrementaldecoder(page)().decode(data)  # a letter may be cut at the end
     is_usual = re.compile(usual, re.DOTALL).fullmatch
     runs = re.findall(r'[^\W\d_\x00-\x7f]+', text)
     letters = ''.join(runs)
     count = sum(is_usual(letter.encode(page)) is not None for letter in letters)
-    return max(map(len, runs), default=0) > 1 and count >= _USUAL * len(letters)
+    return count / len(letters) if max(map(len, runs), default=0) > 1 else 0.0
 
 
 def read_text(path: Path) -> str:

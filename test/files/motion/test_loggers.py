@@ -12,6 +12,7 @@ import pytest
 
 from tree_sway.errors import FormatError
 from tree_sway.files.motion.motion_file import read_motion
+from tree_sway.files.wind import read_csv_sway
 
 GRAVITY = 9.80665
 DEGREE = np.pi / 180.0
@@ -363,3 +364,27 @@ def test_one_fault_among_small_rates_tells_no_unit(tmp_path: Path) -> None:
     assert record.rate is not None
     assert record.rate[0, 1] == 0.25
     assert any('taken in rad/s; call it gx [deg/s] if it is' in note for note in record.notes)
+
+
+OWN_TIMES = (
+    'X[s],EMG 1,X[s],Acc 1.X (IM) [g],Acc 1.Y (IM) [g],Acc 1.Z (IM) [g],'
+    'X[s],Gyro 1.X (IM) [deg/sec],Gyro 1.Y (IM) [deg/sec],Gyro 1.Z (IM) [deg/sec]'
+)
+
+
+def test_channels_have_times_of_their_own(tmp_path: Path) -> None:
+    """As of Delsys: a muscle at 1,000 Hz fills more rows than an accelerometer at 100 Hz."""
+    path = tmp_path / 'trigno.csv'
+    rows = [
+        f'{k / 1000},0.1,' + (f'{k / 100},0,0,1,{k / 100},2,0,{k}' if k < 20 else ',,,,,,,')
+        for k in range(200)
+    ]
+    path.write_text('\n'.join([OWN_TIMES, *rows]), encoding='utf-8')
+    record = read_motion(path)
+    assert record.rate is not None
+    np.testing.assert_allclose(record.time, np.arange(20) / 100)
+    np.testing.assert_allclose(record.rate[:, 2], np.radians(np.arange(20)))
+    np.testing.assert_allclose(read_csv_sway(path).time, record.time)
+    path.write_text('\n'.join([OWN_TIMES, *rows]).replace('0.01,2,0,1', '0.012,2,0,1'))
+    with pytest.raises(FormatError, match=r"several times 'X\[s\]', which differ"):
+        read_motion(path)

@@ -35,7 +35,7 @@ from tree_sway.files.motion.motion_columns import (
 )
 from tree_sway.files.motion.motion_record import AXES, MotionRecord
 from tree_sway.files.paths import of_file
-from tree_sway.files.row_times import counted_times, row_times, time_columns
+from tree_sway.files.row_times import by_own_clock, counted_times, row_times, time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import Times
@@ -103,6 +103,9 @@ def _record(table: TextTable, about: Sequence[str]) -> MotionRecord:
     clock = time_columns(table)
     motions = motions_of(table)
     picked = _axes(motions)
+    every = [each for columns in picked.values() for each in columns]
+    if clock is not None:
+        table, clock = by_own_clock(table, clock, every)
     times = None if clock is None else row_times(table, *clock, table.rows)
     if times is None or not np.isfinite(times.seconds).any():
         times = counted_times(table) or times
@@ -112,7 +115,6 @@ def _record(table: TextTable, about: Sequence[str]) -> MotionRecord:
             raise table.error(f'{what}: none of a sensor with its three axes', cure=_PARTIAL)
         raise table.error(what, cure=_NAMES)
     column = None if clock is None else clock[0][0]
-    every = [each for columns in picked.values() for each in columns]
     times = _checked_times(table, times, table.values(every), column)
     found = {quantity: in_si(table, columns, quantity) for quantity, columns in picked.items()}
     values = {quantity: each for quantity, (each, _) in found.items()}

@@ -26,10 +26,10 @@ from tree_sway.files.motion.motion_columns import in_si, motions_of, sample_time
 from tree_sway.files.motion.motion_record import AXES
 from tree_sway.files.motion.motion_table import read_motion_table
 from tree_sway.files.paths import of_file
-from tree_sway.files.row_times import row_times, time_columns
+from tree_sway.files.row_times import by_own_clock, row_times, time_columns
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import Times
+from tree_sway.files.zipped import tables_in
 
 _MAX_VALUE = 1e12
 """Largest time or motion in any unit."""
@@ -75,7 +75,8 @@ def read_csv_sway(path: Path, most_gaps: float = 0.1) -> SwayRecord:
     ``most_gaps`` is the share of rows that may have no number: they are gaps in the times.
     """
     if path.suffix.lower() != '.zip':
-        return parse_sway(read_lines(path), str(path), most_gaps)
+        source, lines = next(tables_in(path))
+        return parse_sway(lines, source, most_gaps)
     found = read_motion_table(path)
     quantity = next(each for each in AXES if getattr(found, each) is not None)
     motion, axes = getattr(found, quantity), tuple(AXES[quantity])
@@ -115,6 +116,7 @@ def parse_sway(lines: list[str], source: str, most_gaps: float = 0.0) -> SwayRec
             cure=f'keep the columns of one quantity, of {", ".join(names)}',
         )
     motion = next([*axes.values()] for (each, _), axes in groups.items() if each == quantity)
+    table, clock = by_own_clock(table, clock, motion)
     columns = [table.columns[each] for each in motion]
     kept = np.flatnonzero(np.isfinite(table.values(motion)).all(axis=1))
     n_gaps = len(table.rows) - len(kept)
