@@ -395,6 +395,15 @@ def test_months_of_a_typical_year_are_of_one_year(tmp_path: Path, years: tuple[i
     assert f'months of several years are taken as those of {years[0]}' in record.notes
 
 
+def test_two_months_of_years_far_apart_are_of_a_typical_year(tmp_path: Path) -> None:
+    rows = [f'2005-01-31 {hour}:00,5,225' for hour in range(12, 24)]
+    later = [f'{{}}-02-01 {hour:02d}:00,5,225' for hour in range(12)]
+    for year, is_moved in ((2006, False), (2019, True)):
+        text = '\n'.join(['time,speed [m/s],direction', *rows, *later]).format(*[year] * 12)
+        record = read_wind(written(tmp_path, text), turbulence=False)
+        assert (record.duration < 86400.0) == is_moved
+
+
 def motion_rows(form: str) -> str:
     lines = []
     for row in range(200):

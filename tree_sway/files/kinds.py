@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+import re
 
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files.column_names import folded, motion_of
@@ -73,7 +74,7 @@ def kind_of(path: Path) -> str:
 def _kind_of_table(head: str) -> str:
     """Return whether the columns of a table over time are a wind or a motion."""
     with suppress(FormatError):
-        if head.lstrip()[:1] in ('{', '['):  # its end may be missing
+        if re.match(r'\s*[{[](?![A-Za-z])', head):  # JSON, whose end may be missing
             return 'wind' if looks_like_wind(head) else ''
         table = table_of(head.splitlines()[:_ROWS], '')
         if not table.find_all('time'):

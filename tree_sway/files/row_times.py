@@ -70,7 +70,7 @@ def by_own_clock(
     """
     name = table.columns[clock[0][0]]
     clocks = [index for index, each in enumerate(table.columns) if each == name]
-    if len(clocks) < 2 or not columns:
+    if len(clocks) < 2 or len(clock[0]) > 1 or not columns:
         return table, clock
     own = sorted({max([clocks[0], *filter(column.__gt__, clocks)]) for column in columns})
     part = table.part(row for row, cell in enumerate(table.cells(own[0], table.rows)) if cell)
@@ -150,7 +150,8 @@ def _of_one_year(times: Times) -> Times:
     seconds = times.seconds.copy()
     seconds[known] += shift.astype(np.float64)
     goes_back = (np.diff(since_1970) < 0.0).any()
-    is_apart = goes_back or len(np.unique(years)) > 2
+    in_order = np.unique(years).astype(np.int64)
+    is_apart = goes_back or len(in_order) > 2 or (np.diff(in_order) > 1).any()
     rises = (np.diff(seconds[known]) > 0.0).all()
     if not (is_apart and rises):
         return times

@@ -323,6 +323,46 @@ def test_a_serial_monitor_is_read_with_its_clock(tmp_path: Path) -> None:
     np.testing.assert_allclose(record.acceleration, [[0.5, 0.0, 9.81]] * COUNT)
 
 
+@pytest.mark.parametrize('sign', [' \t', ', '])
+def test_a_sketch_may_have_a_line_for_each_quantity(tmp_path: Path, sign: str) -> None:
+    """As those of Adafruit, which say first what is set."""
+    path = tmp_path / 'serial.txt'
+    lines = [f'10:00:00.000 -> {each}' for each in ('LSM6DSOX found!', 'rate set to: 104 Hz')]
+    for k in range(COUNT):
+        clock = f'10:00:{STEP * k:06.3f} -> '
+        lines += [f'{clock}\t\tTemperature 18.40 deg C', clock]
+        lines += [f'{clock}\t\tAccel X: 0.5{sign}Y: 0.0{sign}Z: 9.81 m/s^2 ']
+        lines += [f'{clock}\t\tGyro X: 0.01{sign}Y: -0.02{sign}Z: {k} radians/s ']
+    path.write_text('\n'.join(lines))
+    record = read_motion(path)
+    np.testing.assert_allclose(np.diff(record.time), STEP, atol=1e-9)
+    np.testing.assert_allclose(record.acceleration, [[0.5, 0.0, 9.81]] * COUNT)
+    assert record.rate is not None
+    np.testing.assert_allclose(record.rate[:, 2], np.arange(COUNT))
+    path.write_text('\n'.join(line.partition(' -> ')[2] for line in lines))
+    with pytest.raises(FormatError, match='no time among Accel X'):
+        read_motion(path)
+
+
+def test_a_rate_above_the_header_counts_for_calibration_too(tmp_path: Path) -> None:
+    path = tmp_path / 'serial.txt'
+    rows = ''.join(f'0.0{k % 7}\t0.03\t0.99\n' for k in range(50))
+    path.write_text(f'Accelerometer sample rate = 100.00 Hz\nX\tY\tZ\n{rows}')
+    np.testing.assert_allclose(read_csv_sway(path).time, np.arange(50) / 100)
+
+
+def test_tilts_below_a_title_in_brackets_are_no_wind(tmp_path: Path) -> None:
+    """As of pulling tests."""
+    path = tmp_path / 'pull.txt'
+    rows = ''.join(f'{51727 + 0.12 * k:.2f}\t{k}\t0.{k:02d}\t-0.01\n' for k in range(50))
+    path.write_text(
+        f'[tree]\nnumber\t3\n\n[Data]\nTime\tForce(100)\tInclino(80)X\tInclino(80)Y\n{rows}'
+    )
+    assert read_csv_sway(path).quantity == 'tilt'
+    with pytest.raises(FormatError, match='tilts, strains and single axes'):
+        read_motion(path)
+
+
 def test_an_error_names_the_line_of_the_header(tmp_path: Path) -> None:
     path = tmp_path / 'a.csv'
     path.write_text('made by a program\n\ntime,colour,ax\n0,red,1\n0.02,blue,2\n')

@@ -111,6 +111,10 @@ def test_reports_of_airports(tmp_path: Path) -> None:
     path.write_text('\n'.join(lines))
     record = read_wind(path, turbulence=False)
     assert record.time.tolist() == [0.0, 1800.0, 7200.0, 9000.0]
+    path.write_text('\n'.join([f'{lines[4]},2026-04-01T00:50:00Z', *lines[3::-1]]))
+    newest_first = read_wind(path, turbulence=False)
+    assert newest_first.time.tolist() == record.time.tolist()
+    np.testing.assert_array_equal(newest_first.velocity, record.velocity)
     np.testing.assert_allclose(record.velocity[1], [20 * 1852 / 3600, 0, 0], atol=1e-9)
     np.testing.assert_allclose(record.velocity[3], [-5, 0, 0], atol=1e-9)
     assert record.gust is not None

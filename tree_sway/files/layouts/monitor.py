@@ -4,7 +4,7 @@
 What a serial monitor shows: ``12:00:00.120 -> `` before each line, and pairs as ``ax:0.12``.
 
 So does the Arduino IDE, whose plotter takes pairs. Its clock is the time where the lines have no
-other.
+other. Sketches of Adafruit have a line for each quantity: ``Accel X: 0.12 Y: 0.34 Z: 9.81 m/s^2``.
 """
 
 from __future__ import annotations
@@ -29,6 +29,12 @@ _PAIR = re.compile(
     r'\s{0,9}([A-Za-z°][\w°/^²]{0,20})?(?:[,;|\s]+|$)'
 )
 """Name, number or point of the compass, and maybe a unit."""
+_AXES = re.compile(
+    r'\s*([A-Za-z]\w*) X: ?([-\d.]+),?\s+Y: ?([-\d.]+),?\s+Z: ?([-\d.]+)\s*([a-z/^²\d]*)\s*', re.I
+)
+"""Quantity, three axes, and a unit."""
+_HEAD = 40
+"""Lines among which the first of a quantity is."""
 
 
 def pairs_of(line: str) -> dict[str, str]:
@@ -44,11 +50,16 @@ def _are_pairs(line: str) -> bool:
 def _is_monitored(lines: Sequence[str]) -> bool:
     first = [line for line in lines[:3] if line.strip()]
     are_stamped = all(_LINE.findall(line)[0][0] for line in first)
-    return len(first) > 1 and (are_stamped or all(map(_are_pairs, first)))
+    has_axes = any(_AXES.fullmatch(_LINE.findall(line)[0][1]) for line in lines[:_HEAD])
+    return len(first) > 1 and (are_stamped or has_axes or all(map(_are_pairs, first)))
 
 
 def _read(lines: list[str], source: str) -> TextTable:
     clocks, texts = map(list, zip(*(_LINE.findall(line)[0] for line in lines), strict=True))
+    if vectors := _vectors(clocks, texts):
+        columns = [*dict.fromkeys(name for row in vectors.values() for name in row)]
+        rows_of = [[row.get(name, '') for name in columns] for row in vectors.values()]
+        return table_of_cells(columns, rows_of, source, [*vectors])
     filled = [text for text in texts if text.strip()]
     if not _are_pairs(filled[-1]):
         separator = max(SEPARATORS, key=filled[-1].count)
@@ -66,6 +77,25 @@ def _read(lines: list[str], source: str) -> TextTable:
     }
     clock = _CLOCK if any(clocks) else ''
     return table_of_cells([clock, *names], cells.values(), source, [*cells])
+
+
+def _vectors(clocks: Sequence[str], texts: Sequence[str]) -> dict[int, dict[str, str]]:
+    """Return the quantities of three axes by their names, from each line of the first one on."""
+    rows: dict[int, dict[str, str]] = {}
+    row: dict[str, str] = {}
+    first = ''
+    for number, (clock, found) in enumerate(
+        zip(clocks, map(_AXES.fullmatch, texts), strict=True), 1
+    ):
+        if found is not None:
+            quantity, *axes, unit = found.groups()
+            first = first or quantity
+            if quantity == first:
+                row = rows[number] = {_CLOCK: clock} if clock else {}
+            row |= {
+                f'{quantity} {axis} [{unit}]': at for axis, at in zip('XYZ', axes, strict=True)
+            }
+    return rows
 
 
 MONITOR = Layout(_is_monitored, _read)

@@ -5,8 +5,8 @@ METAR, the reports of airports: ``EDDF 221150Z 24015G27KT ...``, a line each.
 
 The group of the wind is where it comes from in degrees, its mean speed and maybe its gust (WMO
 Manual on Codes 306, FM 15). A report has the day of the month and no month: one whose day is
-smaller than that of the line before is on the next day. A date before the first one, as Ogimet
-writes it, is that of the record.
+smaller than that of the report before is on the next day. The newest may be first. A date beside
+the first one, as of Ogimet, is that of the record.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ METAR = re.compile(
     r'\b(\d\d)(\d\d)(\d\d)Z\b.*?\b(\d{3}|VRB|///)(\d\d\d?|//)(?:G(\d\d\d?))?(KT|MPS|KMH)\b',
     re.ASCII,
 )
-_DATE = re.compile(r'\b20\d{4}(\d\d)')
-"""Year, month and day before a report."""
+_DATE = re.compile(r'\b20\d\d-?\d\d-?(\d\d)')
+"""Year, month and day beside a report."""
 _MEAN = 600.0
 """Length of the mean of a report in [s] (WMO Manual on Codes 306, FM 15)."""
 
@@ -46,12 +46,13 @@ def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> Win
     day = 0
     passed = 0
     epoch = None
-    for number, line in enumerate(read_lines(path), start=1):
-        report = METAR.search(line)
-        if report is None:
-            continue
+    lines = enumerate(map(METAR.search, read_lines(path)), start=1)
+    reports = [(number, report) for number, report in lines if report]
+    steps = np.diff([int(''.join(report.groups()[:3])) for _, report in reports])
+    # The newest one may be first.
+    for number, report in reports[:: -1 if (steps < 0).sum() > (steps > 0).sum() else 1]:
         today, hour, minute = (int(report[i]) for i in (1, 2, 3))
-        date = None if day else _DATE.search(line[: report.start()])
+        date = None if day else _DATE.search(report.string)
         if date and int(date[1]) == today:
             epoch = dates([date[0]]).epoch
         if today != day:

@@ -26,7 +26,7 @@ from tree_sway.files.motion.motion_columns import in_si, motions_of, sample_time
 from tree_sway.files.motion.motion_record import AXES
 from tree_sway.files.motion.motion_table import read_motion_table
 from tree_sway.files.paths import of_file
-from tree_sway.files.row_times import by_own_clock, row_times, time_columns
+from tree_sway.files.row_times import by_own_clock, counted_times, row_times, time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.time_stamps import Times
 from tree_sway.files.zipped import tables_in
@@ -102,9 +102,10 @@ def parse_sway(lines: list[str], source: str, most_gaps: float = 0.0) -> SwayRec
     # Sensor Logger has axes x, y, z for all its sensors.
     is_logged = 'seconds_elapsed' in table.columns
     groups = motions_of(table, 'acceleration' if is_logged else 'displacement')
-    if clock is None or not groups:
+    counted = counted_times(table) if clock is None else None
+    if (clock or counted) is None or not groups:
         raise table.error(
-            f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}',
+            f'no {"motion" if clock or counted else "time"} among {", ".join(table.columns[:20])}',
             cure='call the columns time, x, y or time, tilt_x or time, ax, ay in the header',
         )
     quantities = sorted({quantity for quantity, _ in groups})
@@ -116,12 +117,14 @@ def parse_sway(lines: list[str], source: str, most_gaps: float = 0.0) -> SwayRec
             cure=f'keep the columns of one quantity, of {", ".join(names)}',
         )
     motion = next([*axes.values()] for (each, _), axes in groups.items() if each == quantity)
-    table, clock = by_own_clock(table, clock, motion)
+    if clock is not None:
+        table, clock = by_own_clock(table, clock, motion)
     columns = [table.columns[each] for each in motion]
     kept = np.flatnonzero(np.isfinite(table.values(motion)).all(axis=1))
     n_gaps = len(table.rows) - len(kept)
     if n_gaps <= most_gaps * len(table.rows):
         table = table.part(kept)
+        counted = counted and counted._replace(seconds=counted.seconds[kept])
     values = table.strict(columns)
     with np.errstate(over='ignore'):
         motion_si, note = in_si(table, motion, quantity, is_scale_needed=False)
@@ -131,7 +134,8 @@ def parse_sway(lines: list[str], source: str, most_gaps: float = 0.0) -> SwayRec
             row,
             'correct the cell or remove the row',
         )
-    times = _times(table, *clock)
+    times = _times(table, *clock) if clock else counted
+    assert times is not None
     gaps = f'{n_gaps} rows without a number are left out' if n_gaps else ''
     notes = tuple(filter(None, (gaps, note, times.note)))
     return SwayRecord(times.seconds, motion_si, quantity, tuple(columns), source, notes)

@@ -114,8 +114,9 @@ def read_table_wind(
     assert time is not None
     stored = np.flatnonzero(np.isfinite(winds).all(axis=1))
     times = row_times(table, *time, stored.tolist())
-    if len(stored) > 1 and bool((np.diff(times.seconds) < 0.0).all()):
-        # The newest row first, as services export them.
+    steps = np.diff(times.seconds)
+    if np.count_nonzero(steps < 0.0) > np.count_nonzero(steps >= 0.0):
+        # The newest row first, as services export them, maybe with one twice.
         stored = stored[::-1]
         times = row_times(table, *time, stored.tolist())
     _fill(rows, table, winds[stored], stored, times.seconds, speed_unit)
