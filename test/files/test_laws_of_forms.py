@@ -230,6 +230,7 @@ def test_units_are_words_of_names_without_a_sign(tmp_path: Path) -> None:
             'counts of 1/64 g',
         ),
         ('a.ASC', 'EVENT_NAME: NORCIA\nEVENT_ID: 1\nDATE: 20261030\n', 'as of ESM and ITACA'),
+        ('a.csv', 'PROVINCIA;MUNICIPIO;ESTACION;MAGNITUD;H01;V01\n', 'as of Madrid'),
         ('a.pos', '% program   : RTKPOST ver.2.4.3\n% obs start : 2026\n', 'of RTKLIB'),
         ('take.csv', 'Format Version,1.23,Take Name,pull\n', 'a take of OptiTrack Motive'),
         ('a.mnd', 'FORMAT-1\n2024-03-05 00:00:00 0\nSFAS\n', 'profiles of a sodar in blocks'),
@@ -250,6 +251,7 @@ def test_the_beginning_tells_before_the_suffix(
         ('a.xml', '<?xml version="1.0"?><?xml-stylesheet?>\n<Bestand>\n', 'stand of TreeGrOSS'),
         ('a.gml', '<wfs:FeatureCollection xmlns:wfs="x">\n', 'features of a map service in GML'),
         ('a.asc', '//X Y Z Intensity\n1 2 3 40\n', 'a point cloud'),
+        ('a.asc', 'ncols 40\nnrows 36\nxllcorner 0\n', 'a raster of heights'),
         ('a.csv', '"code","azimuth","dBase","dTip"\n"L1",0,70,50\n', 'the logs and branches'),
     ],
 )

@@ -47,6 +47,18 @@ READ = {
         '2;Linde;Tilia europaea;d. 12 tot 15 m.;45;4.9014;52.3713;POINT(4.9014 52.3713)\n',
         [('elm', 10.5, 0.3), ('lime', 13.5, 0.45)],
     ),
+    'Alessandria': (
+        'Identificativo;Tipologia;Essenza;RangeAltezza;RangeDiametroFusto;CoordX;CoordY\n'
+        '1;Albero;Tilia cordata;2) 10 - 16m;2) 20cm< & <=50cm;1470210.4;4972811.7\n'
+        '2;Ceppaia;Tilia cordata;;3) 50cm< & <=100cm;1470215.4;4972811.7\n'
+        '3;Albero;Fagus sylvatica;1) < 10m;1) <= 20cm;1470220.4;4972811.7\n',
+        [('lime', 13.0, 0.35), ('beech', 10.0, 0.2)],
+    ),
+    'LiDAR360': (
+        'TreeID,TreeLocationX,TreeLocationY,TreeHeight,DBH,CrownDiameter,species\n'
+        '1,432613.3,5286463.6,22.8,0.49,5.7,beech\n2,432617.6,5286457.7,17.8,0.289,3.3,oak\n',
+        [('beech', 22.8, 0.49), ('oak', 17.8, 0.289)],
+    ),
     'Copenhagen': (
         'FID,bydelsnavn,traeart,dansk_navn,slaegt,stammeomfang,traehojde,wkb_geometry\n'
         'x.1,Indre By,Tilia cordata,Lind,Tilia,110,12,POINT (12.5683 55.6761)\n'
