@@ -153,6 +153,13 @@ def test_one_of_several_tables_alike_is_not_read_alone(tmp_path: Path) -> None:
         for stamp, speed in zip(STAMPS, SPEED, strict=True)
     ]
     path = tmp_path / 'wind.json'
+    path.write_text(dumps({'days': [{'hour': rows[:5]}, {'hour': rows[5:]}]}))
+    read = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(np.hypot(*read.velocity[:, :2].T), SPEED)
+    assert '2 lists of following times are read as one' in read.notes
+    path.write_text(dumps([{'hour': rows[1:]}, {'hour': rows[:-1]}]))
+    with pytest.raises(FormatError, match='2 tables of the same columns'):
+        read_wind(path)
     path.write_text(dumps({'north': {'rows': rows[:5]}, 'south': {'rows': rows[5:]}}))
     with pytest.raises(FormatError, match='2 tables of the same columns'):
         read_wind(path)

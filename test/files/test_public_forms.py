@@ -354,6 +354,7 @@ def test_the_first_of_columns_of_one_name_is_said(tmp_path: Path) -> None:
         ('time,speed,direction\nnow,3,90\n', 'a.csv', 'no time in it'),
         ('date,clock,speed,dir\n' + '2024-03-05,14:00,3,9\n' * 9, 'a.csv', 'stands or goes back'),
         ('{"SiteRep": {"Wx": {}}}', 'a.json', 'DataPoint'),
+        ('[{"_id":1789812000,"w-dir":244,"w-avg":12.1}]', 'a.json', 'of winds.mobi'),
         ('{"20261009060000":{"prefNumber":44,"wind":[3.5,0]}}', 'a.json', 'of AMeDAS'),
         ('netcdf a {\nvariables:\n}\n', 'a.txt', 'netCDF file as text'),
         ('Mast 1\n 50.0 8.0 10.0\n 12 1.00 0\n', 'a.tab', 'a table of frequencies'),

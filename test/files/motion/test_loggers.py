@@ -344,6 +344,24 @@ def test_a_sketch_may_have_a_line_for_each_quantity(tmp_path: Path, sign: str) -
         read_motion(path)
 
 
+def test_a_sketch_may_have_its_quantities_in_brackets(tmp_path: Path) -> None:
+    """As those of SparkFun."""
+    path = tmp_path / 'serial.txt'
+    lines = ['10:00:00.000 -> Initialization returned: All is well.']
+    for k in range(COUNT):
+        values = 'Acc (mg) [  00050.00, -00003.00,  01000.00 ], Gyr (DPS) [  00090.00,  00002.64, '
+        lines.append(
+            f'10:00:{STEP * k:06.3f} -> Scaled. {values} 00000.17 ], Tmp (C) [  00023.90 ]'
+        )
+    path.write_text('\n'.join(lines))
+    record = read_motion(path)
+    np.testing.assert_allclose(np.diff(record.time), STEP, atol=1e-9)
+    assert record.acceleration is not None
+    np.testing.assert_allclose(record.acceleration[:, 0], 0.05 * 9.80665)
+    assert record.rate is not None
+    np.testing.assert_allclose(record.rate[:, 0], np.pi / 2.0)
+
+
 def test_a_rate_above_the_header_counts_for_calibration_too(tmp_path: Path) -> None:
     path = tmp_path / 'serial.txt'
     rows = ''.join(f'0.0{k % 7}\t0.03\t0.99\n' for k in range(50))

@@ -12,10 +12,12 @@ beside it. The longest of these in the document is the table.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 import re
 from typing import Any
+
+import numpy as np
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
@@ -46,8 +48,10 @@ from tree_sway.files.layouts.station_messages import (
     SIGNALK_WIND,
     tempest_values,
 )
+from tree_sway.files.row_times import time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import finite
+from tree_sway.files.time_stamps import times_of
 
 _BEGINS = r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))'
 _CLOCK = re.compile(r'\d{9}|\d{4}-\d\d-\d\d')
@@ -138,8 +142,8 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
     if isinstance(node, list):
         if node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
-        for each in node:
-            yield from _tables(each, units, source, depth + 1)
+        inner = (table for each in node for table in _tables(each, units, source, depth + 1))
+        yield from _one_after_another(inner)
     elif isinstance(node, dict):
         if rows := list(_rows(node, own)):
             yield _records(rows, units | own, source)
@@ -149,6 +153,20 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             yield from _tables(each, units | own_units, source, depth + 1)
         if columns := spread_rows(node, own):  # after those of a part of it
             yield _records(columns, units | own, source)
+
+
+def _one_after_another(tables: Iterable[TextTable]) -> Iterator[TextTable]:
+    """Yield the tables of a list, those of following times, as of days, as one."""
+    by_columns: dict[tuple[str, ...], list[TextTable]] = {}
+    for each in tables:
+        by_columns.setdefault(each.columns, []).append(each)
+    for alike in by_columns.values():
+        texts = [text for table in alike for text in table.texts]
+        note = f'{len(alike)} lists of following times are read as one'
+        whole = replace(alike[0], texts=texts, numbers=range(1, len(texts) + 1), note=note)
+        clock = time_columns(whole) if len(alike) > 1 else None
+        times = times_of(whole.cells(clock[0][0], whole.rows)).seconds if clock else [0.0, 0.0]
+        yield from [whole] if (np.diff(times) > 0.0).all() else alike
 
 
 def _samples(messages: list[Any]) -> Iterator[Record]:

@@ -4,7 +4,8 @@
 What a serial monitor shows: ``12:00:00.120 -> `` before each line, and pairs as ``ax:0.12``.
 
 So does the Arduino IDE, whose plotter takes pairs. Its clock is the time where the lines have no
-other. Sketches of Adafruit have a line for each quantity: ``Accel X: 0.12 Y: 0.34 Z: 9.81 m/s^2``.
+other. Sketches of Adafruit have a line for each quantity, ``Accel X: 0.12 Y: 0.34 Z: 9.81 m/s^2``,
+those of SparkFun one for all, ``Acc (mg) [ 39.80, -3.01, 1002.35 ], Gyr (DPS) [ ... ]``.
 """
 
 from __future__ import annotations
@@ -30,9 +31,12 @@ _PAIR = re.compile(
 )
 """Name, number or point of the compass, and maybe a unit."""
 _AXES = re.compile(
-    r'\s*([A-Za-z]\w*) X: ?([-\d.]+),?\s+Y: ?([-\d.]+),?\s+Z: ?([-\d.]+)\s*([a-z/^²\d]*)\s*', re.I
+    r'\b([A-Za-z]\w{0,30}) '
+    r'(?:X: ?([-\d.]+),?\s+Y: ?([-\d.]+),?\s+Z: ?([-\d.]+)\s*([a-z/^²\d]*)|'
+    r'\((\w+)\) \[ *([-\d.]+), *([-\d.]+), *([-\d.]+) *\],?)',
+    re.IGNORECASE,
 )
-"""Quantity, three axes, and a unit."""
+"""Quantity, and either three axes and a unit or a unit and three axes."""
 _HEAD = 40
 """Lines among which the first of a quantity is."""
 
@@ -50,7 +54,7 @@ def _are_pairs(line: str) -> bool:
 def _is_monitored(lines: Sequence[str]) -> bool:
     first = [line for line in lines[:3] if line.strip()]
     are_stamped = all(_LINE.findall(line)[0][0] for line in first)
-    has_axes = any(_AXES.fullmatch(_LINE.findall(line)[0][1]) for line in lines[:_HEAD])
+    has_axes = any(_AXES.search(_LINE.findall(line)[0][1]) for line in lines[:_HEAD])
     return len(first) > 1 and (are_stamped or has_axes or all(map(_are_pairs, first)))
 
 
@@ -84,17 +88,13 @@ def _vectors(clocks: Sequence[str], texts: Sequence[str]) -> dict[int, dict[str,
     rows: dict[int, dict[str, str]] = {}
     row: dict[str, str] = {}
     first = ''
-    for number, (clock, found) in enumerate(
-        zip(clocks, map(_AXES.fullmatch, texts), strict=True), 1
-    ):
-        if found is not None:
-            quantity, *axes, unit = found.groups()
+    for number, (clock, text) in enumerate(zip(clocks, texts, strict=True), 1):
+        for quantity, x, y, z, behind, unit, *others in _AXES.findall(text):
             first = first or quantity
             if quantity == first:
                 row = rows[number] = {_CLOCK: clock} if clock else {}
-            row |= {
-                f'{quantity} {axis} [{unit}]': at for axis, at in zip('XYZ', axes, strict=True)
-            }
+            axes = zip('XYZ', others if unit else (x, y, z), strict=True)
+            row |= {f'{quantity} {axis} [{unit or behind}]': value for axis, value in axes}
     return rows
 
 

@@ -15,7 +15,7 @@ import webbrowser
 
 import numpy as np
 
-from tree_sway.commands import additions, Ending, waiting
+from tree_sway.commands import additions, counting, Ending
 from tree_sway.core.checks import within
 from tree_sway.core.scene import PlacedTree, Scene, Simulator
 from tree_sway.core.settings import Settings, USUAL
@@ -116,14 +116,13 @@ def _serve(
     choices = replace(choices, **first)  # type: ignore[arg-type]
     motion = next((each.motion for each in added if each.motion is not None), None)
     told: dict[str, tuple[str, ...]] = {}
-    with waiting(f'setting {arguments.tree} up'):
-        session = Session(
-            lambda wanted: build_scene(wanted, arguments, added, told, scene),
-            choices,
-            wind,
-            motion=motion,
-            warnings=told,
-        )
+    session = Session(
+        lambda wanted: build_scene(wanted, arguments, added, told, scene),
+        choices,
+        wind,
+        motion=motion,
+        warnings=told,
+    )
     found = (each.critical_winds(session.names) for each in added)
     critical_winds = next((each for each in found if each is not None), None)
 
@@ -209,11 +208,12 @@ def build_scene(
     far = distance_settings(arguments)
     far |= {'gusts': choices.gusts, 'anemometer_distance': choices.anemometer_distance}
     settings = Settings(damping_ratio=damping, in_leaf=in_leaf, **far)
-    for each in added if is_first else ():
-        simulator = each.simulator(scene, settings, choices)
-        if simulator is not None:
-            return simulator
-    return scene.simulator(settings, model=choices.model)
+    with counting(len(scene.kinds), f'setting {choices.tree} up') as done:
+        for each in added if is_first else ():
+            simulator = each.simulator(scene, settings, choices)
+            if simulator is not None:
+                return simulator
+        return scene.simulator(settings, model=choices.model, progress=done)
 
 
 def _grown(choices: Choices) -> Scene:
