@@ -5,12 +5,16 @@ JSON of trees as tables: a row per record, a column per property.
 
 So are GeoJSON (RFC 7946), whose place is a point or else the mean of the corners, OpenStreetMap's
 elements with ``tags``, ArcGIS's features with ``attributes``, and the records of the portals CKAN
-and Opendatasoft, and records in a list, one in each line, or one in each file of a zip.
+and Opendatasoft; records in all lists of a document, by their keys or as columns, one in each
+line, or one in each file of a zip.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from itertools import islice
 import json
 from pathlib import Path
 import re
@@ -18,7 +22,9 @@ from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.json_values import document_of, flat, list_of, object_of, Record
+from tree_sway.files.column_names import is_named
+from tree_sway.files.json_values import DEEPEST, document_of, flat, list_of, object_of, Record
+from tree_sway.files.scenes.inventory.columns import missing_columns
 from tree_sway.files.scenes.inventory.geometry_cell import point_of_cell
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.zipped import tables_in
@@ -31,6 +37,7 @@ _BEGINS = re.compile(
 )
 _IS_JSON = re.compile(r'\s*[{\[]')
 _HEAD = 9
+_MOST_NAMES = 1000
 _IS_WIND = re.compile(r'"wind_?(speed|dir)', re.IGNORECASE)
 _MERCATOR = re.compile(r'\b(3857|102100|900913)\b')
 """Numbers of the system of maps on the web, whose metres are longer than those of the ground."""
@@ -54,7 +61,8 @@ def read_geojson(path: Path) -> TextTable:
     parts = [*map(_listed, documents)]
     listed = parts[0][0] if parts else ''
     found = [object_of(record) for _, part in parts for record in part]
-    records = [dict(_cells(record)) for record in found]
+    several = set[str]()
+    records = [dict(_cells(record, several)) for record in found]
     if listed == 'elements':  # those of ways and relations have no tags
         tagged = [each for each in records if any(name.startswith('tags.') for name in each)]
         records = [each for each in tagged if each.get('tags.natural') == 'tree'] or tagged
@@ -74,20 +82,46 @@ def read_geojson(path: Path) -> TextTable:
             cure='give each feature a geometry with coordinates of two numbers',
         )
     rows = [[record.get(name, '') for name in names] for record in records]
-    return table_of_cells(names, rows, str(path), row_name='feature')
+    table = table_of_cells(names, rows, str(path), row_name='feature')
+    told = f'some trees have several of {", ".join(sorted(several))}: the first of each counts'
+    return replace(table, note=told if several else '')
 
 
 def _listed(document: Any) -> tuple[str, list[Any]]:
     """Return the name of the list of records in a document, and these; it may be one itself."""
-    if isinstance(document, list):
-        return 'records', document
     inner = object_of(object_of(document).get('result')) or object_of(document)
     listed = next((name for name in _LISTS if name in inner), '')
-    return listed, list_of(inner[listed]) if listed else [inner]
+    if listed:
+        return listed, list_of(inner[listed])
+    columns = [list_of(each) or [*object_of(each).values()] for each in inner.values()]
+    if all(columns) and len({*map(len, columns)}) == 1 and _is_tree(tuple(inner)):  # of pandas
+        return 'records', [
+            dict(zip(inner, row, strict=True)) for row in zip(*columns, strict=True)
+        ]
+    return 'records', _trees_in(document) or list_of(document) or [inner]
 
 
-def _cells(record: Record) -> Iterator[tuple[str, str]]:
-    """Yield the names and cells of a record, its place last."""
+def _trees_in(node: Any, depth: int = DEEPEST) -> list[Any]:
+    """Return the records of trees in all lists of a document, and in objects by their names."""
+    inside = list_of(node) or object_of(node).values()
+    inner: list[Any] = [each for each in inside if isinstance(each, dict | list)] if depth else []
+    deeper = [tree for each in inner for tree in _trees_in(each, depth - 1)]
+    if len(deeper) > 1:
+        return deeper
+    records = [*filter(object_of, inner)]
+    trees = (each for each in records if _is_tree(tuple(dict(flat(each, lists=True)))))
+    least = 1 if isinstance(node, list) else 2
+    return records if len([*islice(trees, least)]) == least else deeper
+
+
+@cache
+def _is_tree(names: tuple[str, ...]) -> bool:
+    """Whether names have two of the place, the species and the size; the first of many tell."""
+    return len(missing_columns(table_of_cells(names[:_MOST_NAMES], [], ''))) < 2
+
+
+def _cells(record: Record, several: set[str]) -> Iterator[tuple[str, str]]:
+    """Yield the names and cells of a record, its place last; add sizes that are ``several``."""
     own = next((name for name in _PROPERTIES if object_of(record.get(name))), '')
     geometry = object_of(record.get('geometry'))
     place = geometry.get('coordinates', [geometry.get('x'), geometry.get('y')])
@@ -102,6 +136,8 @@ def _cells(record: Record) -> Iterator[tuple[str, str]]:
     for name, cell in flat(cells, lists=True):
         if name.lower() not in taken:
             found[name] = found.get(name) or cell  # the first of several records
+            if cell not in ('', found[name]) and is_named(name, 'height', 'diameter', 'girth'):
+                several.add(name)
     yield from found.items()
     if is_placed:
         yield _GEOMETRY, corners

@@ -10,9 +10,9 @@ import re
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.paths import of_file
+from tree_sway.files.scenes.inventory.columns import missing_columns
 from tree_sway.files.scenes.inventory.geojson import looks_like_geojson, read_geojson
 from tree_sway.files.scenes.inventory.geopackage import is_geopackage, read_geopackage
 from tree_sway.files.spreadsheet import read_spreadsheet
@@ -23,7 +23,6 @@ _HEAD = 60
 _LONGEST = 65_536
 """Characters of the beginning of a file in a zip that are looked at."""
 _NAME = re.compile(r'"([^"\n]{1,60})"\s*:')
-SPECIES = 'the species'
 
 
 @of_file
@@ -75,12 +74,3 @@ def lacking_columns(head: str) -> list[str] | None:
         return missing_columns(PLAIN.read(head.splitlines()[:_HEAD], ''))
     except FormatError:
         return None
-
-
-def missing_columns(table: TextTable) -> list[str]:
-    """Describe the columns of an inventory that a table lacks."""
-    return [
-        what
-        for what, choices in INVENTORY.items()
-        if not any(all(map(table.find_all, choice.split())) for choice in choices)
-    ]

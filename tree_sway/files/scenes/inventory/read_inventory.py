@@ -16,8 +16,11 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.species import Species
 from tree_sway.errors import FormatError
 from tree_sway.files.column_names import INVENTORY
-from tree_sway.files.scenes.inventory.columns import InventoryColumns
-from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES
+from tree_sway.files.scenes.inventory.columns import (
+    InventoryColumns,
+    missing_columns,
+    SPECIES,
+)
 from tree_sway.files.scenes.inventory.no_trees import (
     gone_by_codes,
     GROUP,
@@ -117,6 +120,7 @@ def inventory_of(
     if {*missing} - {place, may_lack}:
         raise _lacking(table, missing)
     columns = InventoryColumns(table)
+    columns.note(table.note)
     found = places_of(columns)
     _leave_out_no_trees(columns)
     diameter = diameters_of(columns)
@@ -187,15 +191,19 @@ def _lacking(table: TextTable, missing: Sequence[str]) -> FormatError:
 
 def _leave_out_no_trees(columns: InventoryColumns) -> None:
     """Leave out the rows of dead trees, stumps, empty places, groups, and of no tree at all."""
-    for quantity in ('status', 'species', 'genus', 'alive', 'dead'):
-        for index in columns.table.find_all(quantity):
-            texts = columns.texts(index)
-            gone = gone_by_codes(columns.table.columns[index], quantity, {*texts})
-            none = {'', UNKNOWN, GROUP if quantity == 'status' else ''}
-            for row, text in enumerate(texts):
-                why = 'dead or gone' if text in gone else said_of_none(text)
-                if why not in none:
-                    columns.leave_out(row, why, columns.told(index, row))
+    names = columns.table.columns
+    kinds_of_names = ('status', 'species', 'genus', 'alive', 'dead')
+    told = [(each, kind) for kind in kinds_of_names for each in columns.table.find_all(kind)]
+    says = [*map(said_of_none, names)]
+    told += [(i, 'named') for i, each in enumerate(says) if each not in ('', UNKNOWN, GROUP)]
+    for index, quantity in told:
+        texts = columns.texts(index)
+        gone = gone_by_codes(names[index], quantity, {*texts})
+        none = {'', UNKNOWN, GROUP if quantity == 'status' else ''}
+        for row, text in enumerate(texts):
+            why = says[index] or 'dead or gone' if text in gone else said_of_none(text)
+            if why not in none:
+                columns.leave_out(row, why, columns.told(index, row))
     for index in columns.table.find_all('tree_name')[:1]:
         kinds = [_OF_SCHEDULE.fullmatch(text) for text in columns.texts(index)]
         if {'T'} < {each[1] for each in kinds if each} <= _KINDS_OF_SCHEDULE:
