@@ -10,6 +10,7 @@ import re
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.foreign_file import foreign_file
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.paths import of_file
 from tree_sway.files.scenes.inventory.columns import missing_columns
@@ -30,6 +31,9 @@ def inventory_table(path: Path, head: str) -> TextTable:
     """Return the table of an inventory's file; errors are those of its format."""
     if read := _own_reader(path, head):
         return read(path)
+    what, cure = foreign_file(path, head or ' ')
+    if what:
+        raise FormatError(what, cure=cure)
     name, lines = table_in(path, _is_inventory)
     return PLAIN.read(lines, name)
 
