@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
-from itertools import islice
 import json
 from pathlib import Path
 import re
@@ -93,25 +92,21 @@ def _listed(document: Any) -> tuple[str, list[Any]]:
     listed = next((name for name in _LISTS if name in inner), '')
     if listed:
         return listed, list_of(inner[listed])
-    columns = [list_of(each) or [*object_of(each).values()] for each in inner.values()]
-    if all(columns) and len({*map(len, columns)}) == 1 and _is_tree(tuple(inner)):  # of pandas
-        return 'records', [
-            dict(zip(inner, row, strict=True)) for row in zip(*columns, strict=True)
-        ]
+    columns = ([*list_of(each), *object_of(each).values()] for each in inner.values())
+    rows = [*zip(*columns, strict=False)]  # of pandas
+    if rows and _is_tree(tuple(inner)):
+        return 'records', [dict(zip(inner, row, strict=True)) for row in rows]
     return 'records', _trees_in(document) or list_of(document) or [inner]
 
 
 def _trees_in(node: Any, depth: int = DEEPEST) -> list[Any]:
     """Return the records of trees in all lists of a document, and in objects by their names."""
-    inside = list_of(node) or object_of(node).values()
-    inner: list[Any] = [each for each in inside if isinstance(each, dict | list)] if depth else []
-    deeper = [tree for each in inner for tree in _trees_in(each, depth - 1)]
-    if len(deeper) > 1:
-        return deeper
-    records = [*filter(object_of, inner)]
-    trees = (each for each in records if _is_tree(tuple(dict(flat(each, lists=True)))))
-    least = 1 if isinstance(node, list) else 2
-    return records if len([*islice(trees, least)]) == least else deeper
+    inside = list_of(node) or [*object_of(node).values()]
+    deeper = [tree for each in inside for tree in _trees_in(each, depth - 1)] if depth else []
+    first = (tuple(dict(flat(object_of(each), lists=True))) for each in inside[:_HEAD])
+    n_trees = 0 if len(deeper) > 1 else sum(map(_is_tree, first))
+    is_list = n_trees > (1 if isinstance(node, dict) else 0)
+    return [*filter(object_of, inside)] if is_list else deeper
 
 
 @cache

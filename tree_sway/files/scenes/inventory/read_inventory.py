@@ -134,6 +134,7 @@ def inventory_of(
     for row in np.flatnonzero(~np.isfinite(x + y)).tolist():
         columns.leave_out(row, 'no place', _why_no_place(columns, row))
     leave_out_without_size(columns, height, diameter)
+    _leave_out_repeated(columns, [x, y, height, diameter])
     names, wood = species_of_rows(columns, given)
     keys = [wood[each].key if each in wood else each for each in names]
     is_found = fill_heights(columns, height, diameter, keys)
@@ -191,19 +192,15 @@ def _lacking(table: TextTable, missing: Sequence[str]) -> FormatError:
 
 def _leave_out_no_trees(columns: InventoryColumns) -> None:
     """Leave out the rows of dead trees, stumps, empty places, groups, and of no tree at all."""
-    names = columns.table.columns
-    kinds_of_names = ('status', 'species', 'genus', 'alive', 'dead')
-    told = [(each, kind) for kind in kinds_of_names for each in columns.table.find_all(kind)]
-    says = [*map(said_of_none, names)]
-    told += [(i, 'named') for i, each in enumerate(says) if each not in ('', UNKNOWN, GROUP)]
-    for index, quantity in told:
-        texts = columns.texts(index)
-        gone = gone_by_codes(names[index], quantity, {*texts})
-        none = {'', UNKNOWN, GROUP if quantity == 'status' else ''}
-        for row, text in enumerate(texts):
-            why = says[index] or 'dead or gone' if text in gone else said_of_none(text)
-            if why not in none:
-                columns.leave_out(row, why, columns.told(index, row))
+    for quantity in ('status', 'species', 'genus', 'alive', 'dead'):
+        for index in columns.table.find_all(quantity):
+            texts = columns.texts(index)
+            gone = gone_by_codes(columns.table.columns[index], quantity, {*texts})
+            none = {'', UNKNOWN, GROUP if quantity == 'status' else ''}
+            for row, text in enumerate(texts):
+                why = 'dead or gone' if text in gone else said_of_none(text)
+                if why not in none:
+                    columns.leave_out(row, why, columns.told(index, row))
     for index in columns.table.find_all('tree_name')[:1]:
         kinds = [_OF_SCHEDULE.fullmatch(text) for text in columns.texts(index)]
         if {'T'} < {each[1] for each in kinds if each} <= _KINDS_OF_SCHEDULE:
@@ -225,6 +222,16 @@ def _count_trees(columns: InventoryColumns, index: int) -> None:
             f'rows for several trees by {columns.table.columns[index]}: {len(rows)}, '
             f'{columns.line(rows[0])} for {count[rows[0]]:.0f}; each is taken as one tree'
         )
+
+
+def _leave_out_repeated(columns: InventoryColumns, cells: Sequence[Floats]) -> None:
+    """Leave out all rows of a tree but its first, where rows of a name have one place and size."""
+    trees = [*map(str, zip(*cells, strict=True))]
+    for index in columns.table.find_all('tree_name'):
+        groups = columns.table.rows_by(index).values()
+        if all(len({trees[row] for row in rows}) == 1 for rows in groups):
+            for row in (row for rows in groups for row in rows[1:]):
+                columns.leave_out(row, 'of a tree above', columns.told(index, row))
 
 
 def _double(columns: InventoryColumns, kept: list[int], cells: Sequence[Any]) -> str:
