@@ -44,6 +44,8 @@ DOCUMENTS = {
     'json_api': {'data': ATTRIBUTES, 'meta': {'count': 5}},
     'graphql': {'data': {'trees': {'edges': [{'node': each} for each in TREES]}}},
     'streets': [{'street': 'A', 'trees': TREES[:1]}, {'street': 'B', 'trees': TREES[1:]}],
+    'results_of_streets': {'results': [{'trees': TREES[:2]}, {'trees': TREES[2:]}]},
+    'an_empty_list_beside': {'records': [], 'items': TREES},
     'two_lists': {'oaks': TREES[:3], 'maples': TREES[3:]},
     'by_key': BY_KEY,
     'by_key_in_a_name': {'trees': BY_KEY},

@@ -234,6 +234,10 @@ def test_stems_in_millimetres_are_told_by_heights(tmp_path: Path) -> None:
         ('Suchý', 'ne ano ne', 'dead or gone'),
         ('vacant', 'false true false', 'dead or gone'),
         ('Alive', 'Y N Y', 'dead or gone'),
+        ('Stump present', 'No Yes No', 'dead or gone'),
+        ('Live/Dead', 'L D L', 'dead or gone'),
+        ('Mortality', 'alive dead alive', 'dead or gone'),
+        ('Bemerkung', '- gefällt -', 'dead or gone'),
         ('Removed', '- 2024-03-01 -', 'dead or gone'),
     ],
 )

@@ -97,6 +97,15 @@ def test_rows_in_xml_are_asked_for_as_a_table(tmp_path, content):
         inventory_table(path, read_head(path))
 
 
+def test_a_spreadsheet_in_xml_is_named(tmp_path):
+    path = tmp_path / 'trees.xml'
+    path.write_text(
+        '<?xml version="1.0"?>\n<?mso-application progid="Excel.Sheet"?>\n<Workbook><Worksheet>'
+    )
+    with pytest.raises(FormatError, match='a spreadsheet as XML, not a tree; save it as'):
+        open_scene(path)
+
+
 def test_models_in_xml_are_no_tables(tmp_path):
     path = tmp_path / 'tree.xml'
     path.write_text(

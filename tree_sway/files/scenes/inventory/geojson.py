@@ -57,14 +57,12 @@ def read_geojson(path: Path) -> TextTable:
     """
     texts = [lines for _, lines in tables_in(path) if _IS_JSON.match('\n'.join(lines[:_HEAD]))]
     documents = [document_of(lines, 'GeoJSON') for lines in texts]
-    parts = [*map(_listed, documents)]
-    listed = parts[0][0] if parts else ''
-    found = [object_of(record) for _, part in parts for record in part]
     several = set[str]()
+    found = [object_of(each) for document in documents for each in _records_of(document)]
     records = [dict(_cells(record, several)) for record in found]
-    if listed == 'elements':  # those of ways and relations have no tags
-        tagged = [each for each in records if any(name.startswith('tags.') for name in each)]
-        records = [each for each in tagged if each.get('tags.natural') == 'tree'] or tagged
+    # Those of ways and relations of OpenStreetMap have no tags.
+    tagged = [each for each in records if any(name.startswith('tags.') for name in each)]
+    records = [each for each in tagged if each.get('tags.natural') == 'tree'] or tagged or records
     if not any(records):
         raise FormatError('no features', cure='export points with properties')
     heads = map(object_of, documents)
@@ -75,38 +73,31 @@ def read_geojson(path: Path) -> TextTable:
             cure='export degrees, as by outSR=4326 in ArcGIS',
         )
     names = list(dict.fromkeys(name for record in records for name in record))
-    if listed == 'features' and _GEOMETRY not in names:
-        raise FormatError(
-            'no feature has a place',
-            cure='give each feature a geometry with coordinates of two numbers',
-        )
     rows = [[record.get(name, '') for name in names] for record in records]
     table = table_of_cells(names, rows, str(path), row_name='feature')
-    told = f'some trees have several of {", ".join(sorted(several))}: the first of each counts'
-    return replace(table, note=told if several else '')
+    note = f'some trees have several of {", ".join(sorted(several))}: the first of each counts'
+    return replace(table, note=note) if several else table
 
 
-def _listed(document: Any) -> tuple[str, list[Any]]:
-    """Return the name of the list of records in a document, and these; it may be one itself."""
-    inner = object_of(object_of(document).get('result')) or object_of(document)
-    listed = next((name for name in _LISTS if name in inner), '')
-    if listed:
-        return listed, list_of(inner[listed])
+def _records_of(document: Any) -> list[Any]:
+    """Return the records in a document: of a known list or columns, or else those of trees."""
+    inner = object_of(document)
+    features, elements, *others = (list_of(inner.get(name)) for name in _LISTS)
     columns = ([*list_of(each), *object_of(each).values()] for each in inner.values())
-    rows = [*zip(*columns, strict=False)]  # of pandas
-    if rows and _is_tree(tuple(inner)):
-        return 'records', [dict(zip(inner, row, strict=True)) for row in rows]
-    return 'records', _trees_in(document) or list_of(document) or [inner]
+    rows = [*zip(*columns, strict=False)] if _is_tree(tuple(inner)) else []  # of pandas
+    records = [dict(zip(inner, row, strict=True)) for row in rows]
+    known = features or elements or records or _trees_in([document])
+    return known or list_of(document) or [each for other in others for each in other]
 
 
 def _trees_in(node: Any, depth: int = DEEPEST) -> list[Any]:
     """Return the records of trees in all lists of a document, and in objects by their names."""
     inside = list_of(node) or [*object_of(node).values()]
     deeper = [tree for each in inside for tree in _trees_in(each, depth - 1)] if depth else []
-    first = (tuple(dict(flat(object_of(each), lists=True))) for each in inside[:_HEAD])
-    n_trees = 0 if len(deeper) > 1 else sum(map(_is_tree, first))
-    is_list = n_trees > (1 if isinstance(node, dict) else 0)
-    return [*filter(object_of, inside)] if is_list else deeper
+    records = [*filter(object_of, inside)]
+    n_trees = sum(_is_tree(tuple(dict(flat(each, lists=True)))) for each in records[:_HEAD])
+    is_list = n_trees > isinstance(node, dict)  # an object may have one tree beside other things
+    return records if is_list and len(deeper) < 2 else deeper
 
 
 @cache

@@ -40,9 +40,8 @@ def inventory_table(path: Path, head: str) -> TextTable:
 
 def has_own_format(path: Path, head: str) -> bool:
     """Whether a file is of a format that inventories have and other files of trees have not."""
-    if path.suffix.lower() == '.zip':
-        return _own_reader(path, head) is not None or _is_inventory(_head_in(path))
-    return _own_reader(path, head) is not None
+    is_zip = path.suffix.lower() == '.zip'
+    return _own_reader(path, head) is not None or (is_zip and _is_inventory(_head_in(path)))
 
 
 def _head_in(path: Path) -> str:

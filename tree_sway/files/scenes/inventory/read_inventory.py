@@ -298,5 +298,8 @@ def _names(columns: InventoryColumns, kept: list[int]) -> list[str]:
         names[whole] = 1
         n_changed += whole != (texts[row] or name)
     if n_changed:
-        columns.note(f'{n_changed} names are changed, as they occur twice or have a slash')
+        columns.note(
+            f'{n_changed} names are changed, as they occur twice or have a slash; rows that are '
+            'stems or measurements of one tree count as trees: keep one of each'
+        )
     return [*names]
