@@ -85,6 +85,11 @@ def test_stems_of_a_tree_are_no_trees_and_the_first_is_said(tmp_path: Path) -> N
     assert 'some trees have several of stems.dbh: the first of each counts' in trees.notes
 
 
+def test_tags_that_are_not_of_openstreetmap_leave_no_tree_out(tmp_path: Path) -> None:
+    trees = read(tmp_path, {'trees': [tree(0, tags=['a', 'b', 'c']), tree(1), tree(2, tags=[])]})
+    assert trees.names == ('T0', 'T1', 'T2')
+
+
 def test_rows_without_names_are_refused(tmp_path: Path) -> None:
     with pytest.raises(FormatError):
         read(tmp_path, [[*COLUMNS], *([*each.values()] for each in TREES)])

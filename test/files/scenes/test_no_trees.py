@@ -255,6 +255,8 @@ def test_a_column_of_the_dead_tells_them(
     [
         ('stump_height', '0.3 1 0.5'),
         ('Stock', '3 1 2'),
+        ('TOT', '3 1 2'),
+        ('tot', '1 1 1'),
         ('Totholz', 'nein ja nein'),
         ('dead_wood', 'no yes no'),
         ('hedge', 'no yes no'),

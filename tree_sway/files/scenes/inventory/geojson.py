@@ -53,20 +53,18 @@ def read_geojson(path: Path) -> TextTable:
     """
     Return a table of the records; one whose geometry is broken has no place.
 
-    Raises a `FormatError` for broken JSON, no records, or features of which none has a place.
+    Raises a `FormatError` for broken JSON, no records, or places of a web map in metres.
     """
     texts = [lines for _, lines in tables_in(path) if _IS_JSON.match('\n'.join(lines[:_HEAD]))]
     documents = [document_of(lines, 'GeoJSON') for lines in texts]
     several = set[str]()
     found = [object_of(each) for document in documents for each in _records_of(document)]
     records = [dict(_cells(record, several)) for record in found]
-    # Those of ways and relations of OpenStreetMap have no tags.
-    tagged = [each for each in records if any(name.startswith('tags.') for name in each)]
-    records = [each for each in tagged if each.get('tags.natural') == 'tree'] or tagged or records
+    # Among nodes, ways and relations of OpenStreetMap.
+    records = [each for each in records if each.get('tags.natural') == 'tree'] or records
     if not any(records):
         raise FormatError('no features', cure='export points with properties')
-    heads = map(object_of, documents)
-    systems = [each.get('spatialReference', each.get('crs')) for each in heads]
+    systems = [each.get('spatialReference', each.get('crs')) for each in map(object_of, documents)]
     if _MERCATOR.search(str(systems)):
         raise FormatError(
             'places in the Web Mercator of maps, which is not in metres of the ground',
