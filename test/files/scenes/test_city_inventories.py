@@ -325,7 +325,7 @@ def test_geojson_without_any_place_says_so(tmp_path: Path) -> None:
     path = tmp_path / 'trees.geojson'
     one = feature(1, 2, art='Eiche', hoehe=12) | {'geometry': {'coordinates': [1]}}
     path.write_text(json.dumps({'type': 'FeatureCollection', 'features': [one]}))
-    with pytest.raises(FormatError, match='no feature has a place; give each'):
+    with pytest.raises(FormatError, match=r'no column for the place .* among art, hoehe'):
         read(path)
 
 

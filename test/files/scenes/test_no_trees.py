@@ -216,3 +216,54 @@ def test_stems_in_millimetres_are_told_by_heights(tmp_path: Path) -> None:
     )
     assert inventory.diameter == pytest.approx([0.318, 0.118])
     assert 'D1 is taken as mm, by height over it' in inventory.notes
+
+
+@pytest.mark.parametrize(
+    ('column', 'cells', 'why'),
+    [
+        ('STADE_DEVELOPPEMENT', 'Jeune Mort Adulte', 'dead or gone'),
+        ('Entwicklungsphase', 'Reife abgestorben Jugend', 'dead or gone'),
+        ('stadio di sviluppo', 'adulto morto giovane', 'dead or gone'),
+        ('Vigour class', 'good stump fair', 'only a stump'),
+        ('SOUCHE', 'Non Oui Non', 'dead or gone'),
+        ('Stubbe', 'nej ja nej', 'dead or gone'),
+        ('is_stump', '0 1 0', 'dead or gone'),
+        ('Standing dead (Y/N)', 'n Y n', 'dead or gone'),
+        ('mort', 'non oui non', 'dead or gone'),
+        ('Gefällt', 'nein ja nein', 'dead or gone'),
+        ('Suchý', 'ne ano ne', 'dead or gone'),
+        ('vacant', 'false true false', 'dead or gone'),
+        ('Alive', 'Y N Y', 'dead or gone'),
+        ('Stump present', 'No Yes No', 'dead or gone'),
+        ('Live/Dead', 'L D L', 'dead or gone'),
+        ('Mortality', 'alive dead alive', 'dead or gone'),
+        ('Bemerkung', '- gefällt -', 'dead or gone'),
+        ('Removed', '- 2024-03-01 -', 'dead or gone'),
+    ],
+)
+def test_a_column_of_the_dead_tells_them(
+    tmp_path: Path, column: str, cells: str, why: str
+) -> None:
+    rows = [f'T{i},{9 * i},0,Tilia,12,{cell.strip("-")}' for i, cell in enumerate(cells.split())]
+    trees = read(tmp_path, '\n'.join([f'id,x,y,species,height,{column}', *rows]) + '\n')
+    assert trees.names == ('T0', 'T2')
+    assert any(note.startswith(f'1 row is left out: 1 {why}; line 3') for note in trees.notes)
+
+
+@pytest.mark.parametrize(
+    ('column', 'cells'),
+    [
+        ('stump_height', '0.3 1 0.5'),
+        ('Stock', '3 1 2'),
+        ('TOT', '3 1 2'),
+        ('tot', '1 1 1'),
+        ('Totholz', 'nein ja nein'),
+        ('dead_wood', 'no yes no'),
+        ('hedge', 'no yes no'),
+        ('group', 'no yes no'),
+    ],
+)
+def test_other_columns_do_not(tmp_path: Path, column: str, cells: str) -> None:
+    rows = [f'T{i},{9 * i},0,Tilia,12,{cell}' for i, cell in enumerate(cells.split())]
+    trees = read(tmp_path, '\n'.join([f'id,x,y,species,height,{column}', *rows]) + '\n')
+    assert trees.names == ('T0', 'T1', 'T2')

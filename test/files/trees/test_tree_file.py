@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 
 from tree_sway.errors import FormatError, ParameterError, SpeciesError, TreeError
+from tree_sway.files.scenes.inventory.inventory_file import inventory_table
+from tree_sway.files.text_file import read_head
 from tree_sway.files.trees.source import open_scene
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 
@@ -76,6 +78,41 @@ def test_a_file_of_another_kind_is_named_with_the_formats_that_are_read(
     with pytest.raises(FormatError, match=words) as refused:
         open_scene(tmp_path / name)
     assert 'formats that are read: archi, simpleforest' in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    'content',
+    [
+        '<Trees><count>2</count><RESULT><CODE>0</CODE><TEXT>OK</TEXT></RESULT><row><H>3</H></row>',
+        '<trees>\n <tree id="1">\n  <name>Ulme</name>\n  <height/>\n  <x>3</x>\n  <y>4</y>',
+        '<osm version="0.6"><node id="1" lat="48" lon="9"/><node id="2" lat="48" lon="9"/></osm>',
+    ],
+)
+def test_rows_in_xml_are_asked_for_as_a_table(tmp_path, content):
+    path = tmp_path / 'trees.xml'
+    path.write_text('<?xml version="1.0" encoding="UTF-8"?>\n' + content, encoding='utf-8')
+    with pytest.raises(FormatError, match='a table as XML, not a tree; ask for it as CSV or JSON'):
+        open_scene(path)
+    with pytest.raises(FormatError, match='a table as XML; ask for it as CSV or JSON'):
+        inventory_table(path, read_head(path))
+
+
+def test_a_spreadsheet_in_xml_is_named(tmp_path):
+    path = tmp_path / 'trees.xml'
+    path.write_text(
+        '<?xml version="1.0"?>\n<?mso-application progid="Excel.Sheet"?>\n<Workbook><Worksheet>'
+    )
+    with pytest.raises(FormatError, match='a spreadsheet as XML, not a tree; save it as'):
+        open_scene(path)
+
+
+def test_models_in_xml_are_no_tables(tmp_path):
+    path = tmp_path / 'tree.xml'
+    path.write_text(
+        '<sdf version="1.6"><model name="m"><static>true</static><pose>0</pose></model>'
+    )
+    with pytest.raises(FormatError, match='a model for a robot simulator'):
+        open_scene(path)
 
 
 def test_table_of_segments():

@@ -8,6 +8,7 @@ The header may be a comment. Rows without a number may be below it, one of which
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -36,7 +37,12 @@ _REMARK = re.compile(r'(?:[^\W\d]|[ .:])*[,;\t]*')
 _BETWEEN = re.compile(r'[,;:=\t|()\[\]]|\bin\b')
 """What is between a name, what it means and its unit."""
 _COMMENTED = re.compile(r'#|%|//|;[^;]*$|[\w\s]*\w{3}\.\s*$')
-_PLACE = re.compile(r'(?:(?!wind).)*?(?=wind)|(?:.*[ _])?', re.IGNORECASE)
+_PLACE = re.compile(
+    r'(?:(?!wind).)*?(?=wind)|(?:(?!'
+    r'(?:crown|canopy|krone|couronne|houppier|kroon|copa|chioma|koruna|branch|ast|leaf|root)[ _]'
+    r').*[ _])?',
+    re.IGNORECASE,
+)
 _DIGIT = re.compile(r'[-+]?\.?\d')
 _COMMENT = re.compile(r'(?:[#%/ ]+|;) *(?:[Hh]eaders\s*,)? *')
 _PARTS = ('yyyymmdd', 'yyyy', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
@@ -127,9 +133,15 @@ def _read(lines: list[str], source: str) -> TextTable:
 
 
 def _without_place(names: Sequence[str]) -> Sequence[str]:
-    """Return names without the place that all unknown ones begin with: ``Basel Wind Speed``."""
+    """
+    Return names without the place or thing that most unknown ones begin with, three of four.
+
+    So are ``Basel Wind Speed`` and ``pl_dbh``; the parts of a tree, as ``crown``, are kept.
+    """
     unknown = [name for name in names if not is_known(name)]
-    letters = zip(*unknown, strict=False) if len(unknown) > 1 else ()
+    begins = Counter(name[:2] for name in unknown)
+    most = [name for name in unknown if 4 * begins[name[:2]] > 3 * len(unknown)]
+    letters = zip(*most, strict=False) if len(most) > 1 else ()
     alike = ''.join(each[0] for each in takewhile(lambda each: len({*each}) == 1, letters))
     place = next(_PLACE.finditer(alike))[0]
     short = [name.removeprefix(place) for name in names]

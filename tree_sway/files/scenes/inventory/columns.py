@@ -12,12 +12,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.column_names import is_named, unit_factor, unit_known
+from tree_sway.files.column_names import INVENTORY, is_named, unit_factor, unit_known
 from tree_sway.files.scenes.inventory.cell_number import cell_number, stems_number
 from tree_sway.files.table_file import are_nines, Column, TextTable
 
 _NUMBERED = re.compile(r'(?<=[^\W\d])[ _]?[1-9](?=$|[ _(\[])')
 """Number of a stem in the name of a column."""
+SPECIES = 'the species'
+
+
+def missing_columns(table: TextTable) -> list[str]:
+    """Describe the columns of an inventory that a table lacks."""
+    return [
+        what
+        for what, choices in INVENTORY.items()
+        if not any(all(map(table.find_all, choice.split())) for choice in choices)
+    ]
 
 
 class InventoryColumns:

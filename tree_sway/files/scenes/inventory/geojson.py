@@ -5,12 +5,15 @@ JSON of trees as tables: a row per record, a column per property.
 
 So are GeoJSON (RFC 7946), whose place is a point or else the mean of the corners, OpenStreetMap's
 elements with ``tags``, ArcGIS's features with ``attributes``, and the records of the portals CKAN
-and Opendatasoft, and records in a list, one in each line, or one in each file of a zip.
+and Opendatasoft; records in all lists of a document, by their keys or as columns, one in each
+line, or one in each file of a zip.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
 import json
 from pathlib import Path
 import re
@@ -18,7 +21,9 @@ from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.json_values import document_of, flat, list_of, object_of, Record
+from tree_sway.files.column_names import is_named
+from tree_sway.files.json_values import DEEPEST, document_of, flat, list_of, object_of, Record
+from tree_sway.files.scenes.inventory.columns import missing_columns
 from tree_sway.files.scenes.inventory.geometry_cell import point_of_cell
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.zipped import tables_in
@@ -31,6 +36,7 @@ _BEGINS = re.compile(
 )
 _IS_JSON = re.compile(r'\s*[{\[]')
 _HEAD = 9
+_MOST_NAMES = 1000
 _IS_WIND = re.compile(r'"wind_?(speed|dir)', re.IGNORECASE)
 _MERCATOR = re.compile(r'\b(3857|102100|900913)\b')
 """Numbers of the system of maps on the web, whose metres are longer than those of the ground."""
@@ -47,47 +53,59 @@ def read_geojson(path: Path) -> TextTable:
     """
     Return a table of the records; one whose geometry is broken has no place.
 
-    Raises a `FormatError` for broken JSON, no records, or features of which none has a place.
+    Raises a `FormatError` for broken JSON, no records, or places of a web map in metres.
     """
     texts = [lines for _, lines in tables_in(path) if _IS_JSON.match('\n'.join(lines[:_HEAD]))]
     documents = [document_of(lines, 'GeoJSON') for lines in texts]
-    parts = [*map(_listed, documents)]
-    listed = parts[0][0] if parts else ''
-    found = [object_of(record) for _, part in parts for record in part]
-    records = [dict(_cells(record)) for record in found]
-    if listed == 'elements':  # those of ways and relations have no tags
-        tagged = [each for each in records if any(name.startswith('tags.') for name in each)]
-        records = [each for each in tagged if each.get('tags.natural') == 'tree'] or tagged
+    several = set[str]()
+    found = [object_of(each) for document in documents for each in _records_of(document)]
+    records = [dict(_cells(record, several)) for record in found]
+    # Among nodes, ways and relations of OpenStreetMap.
+    records = [each for each in records if each.get('tags.natural') == 'tree'] or records
     if not any(records):
         raise FormatError('no features', cure='export points with properties')
-    heads = map(object_of, documents)
-    systems = [each.get('spatialReference', each.get('crs')) for each in heads]
+    systems = [each.get('spatialReference', each.get('crs')) for each in map(object_of, documents)]
     if _MERCATOR.search(str(systems)):
         raise FormatError(
             'places in the Web Mercator of maps, which is not in metres of the ground',
             cure='export degrees, as by outSR=4326 in ArcGIS',
         )
     names = list(dict.fromkeys(name for record in records for name in record))
-    if listed == 'features' and _GEOMETRY not in names:
-        raise FormatError(
-            'no feature has a place',
-            cure='give each feature a geometry with coordinates of two numbers',
-        )
     rows = [[record.get(name, '') for name in names] for record in records]
-    return table_of_cells(names, rows, str(path), row_name='feature')
+    table = table_of_cells(names, rows, str(path), row_name='feature')
+    note = f'some trees have several of {", ".join(sorted(several))}: the first of each counts'
+    return replace(table, note=note) if several else table
 
 
-def _listed(document: Any) -> tuple[str, list[Any]]:
-    """Return the name of the list of records in a document, and these; it may be one itself."""
-    if isinstance(document, list):
-        return 'records', document
-    inner = object_of(object_of(document).get('result')) or object_of(document)
-    listed = next((name for name in _LISTS if name in inner), '')
-    return listed, list_of(inner[listed]) if listed else [inner]
+def _records_of(document: Any) -> list[Any]:
+    """Return the records in a document: of a known list or columns, or else those of trees."""
+    inner = object_of(document)
+    features, elements, *others = (list_of(inner.get(name)) for name in _LISTS)
+    columns = ([*list_of(each), *object_of(each).values()] for each in inner.values())
+    rows = [*zip(*columns, strict=False)] if _is_tree(tuple(inner)) else []  # of pandas
+    records = [dict(zip(inner, row, strict=True)) for row in rows]
+    known = features or elements or records or _trees_in([document])
+    return known or list_of(document) or [each for other in others for each in other]
 
 
-def _cells(record: Record) -> Iterator[tuple[str, str]]:
-    """Yield the names and cells of a record, its place last."""
+def _trees_in(node: Any, depth: int = DEEPEST) -> list[Any]:
+    """Return the records of trees in all lists of a document, and in objects by their names."""
+    inside = list_of(node) or [*object_of(node).values()]
+    deeper = [tree for each in inside for tree in _trees_in(each, depth - 1)] if depth else []
+    records = [*filter(object_of, inside)]
+    n_trees = sum(_is_tree(tuple(dict(flat(each, lists=True)))) for each in records[:_HEAD])
+    is_list = n_trees > isinstance(node, dict)  # an object may have one tree beside other things
+    return records if is_list and len(deeper) < 2 else deeper
+
+
+@cache
+def _is_tree(names: tuple[str, ...]) -> bool:
+    """Whether names have two of the place, the species and the size; the first of many tell."""
+    return len(missing_columns(table_of_cells(names[:_MOST_NAMES], [], ''))) < 2
+
+
+def _cells(record: Record, several: set[str]) -> Iterator[tuple[str, str]]:
+    """Yield the names and cells of a record, its place last; add sizes that are ``several``."""
     own = next((name for name in _PROPERTIES if object_of(record.get(name))), '')
     geometry = object_of(record.get('geometry'))
     place = geometry.get('coordinates', [geometry.get('x'), geometry.get('y')])
@@ -102,6 +120,8 @@ def _cells(record: Record) -> Iterator[tuple[str, str]]:
     for name, cell in flat(cells, lists=True):
         if name.lower() not in taken:
             found[name] = found.get(name) or cell  # the first of several records
+            if cell not in ('', found[name]) and is_named(name, 'height', 'diameter', 'girth'):
+                several.add(name)
     yield from found.items()
     if is_placed:
         yield _GEOMETRY, corners

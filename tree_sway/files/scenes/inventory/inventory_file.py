@@ -10,9 +10,10 @@ import re
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import INVENTORY
+from tree_sway.files.foreign_file import foreign_file
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.paths import of_file
+from tree_sway.files.scenes.inventory.columns import missing_columns
 from tree_sway.files.scenes.inventory.geojson import looks_like_geojson, read_geojson
 from tree_sway.files.scenes.inventory.geopackage import is_geopackage, read_geopackage
 from tree_sway.files.spreadsheet import read_spreadsheet
@@ -23,7 +24,6 @@ _HEAD = 60
 _LONGEST = 65_536
 """Characters of the beginning of a file in a zip that are looked at."""
 _NAME = re.compile(r'"([^"\n]{1,60})"\s*:')
-SPECIES = 'the species'
 
 
 @of_file
@@ -31,15 +31,17 @@ def inventory_table(path: Path, head: str) -> TextTable:
     """Return the table of an inventory's file; errors are those of its format."""
     if read := _own_reader(path, head):
         return read(path)
+    what, cure = foreign_file(path, head or ' ')
+    if what:
+        raise FormatError(what, cure=cure)
     name, lines = table_in(path, _is_inventory)
     return PLAIN.read(lines, name)
 
 
 def has_own_format(path: Path, head: str) -> bool:
     """Whether a file is of a format that inventories have and other files of trees have not."""
-    if path.suffix.lower() == '.zip':
-        return _own_reader(path, head) is not None or _is_inventory(_head_in(path))
-    return _own_reader(path, head) is not None
+    is_zip = path.suffix.lower() == '.zip'
+    return _own_reader(path, head) is not None or (is_zip and _is_inventory(_head_in(path)))
 
 
 def _head_in(path: Path) -> str:
@@ -75,12 +77,3 @@ def lacking_columns(head: str) -> list[str] | None:
         return missing_columns(PLAIN.read(head.splitlines()[:_HEAD], ''))
     except FormatError:
         return None
-
-
-def missing_columns(table: TextTable) -> list[str]:
-    """Describe the columns of an inventory that a table lacks."""
-    return [
-        what
-        for what, choices in INVENTORY.items()
-        if not any(all(map(table.find_all, choice.split())) for choice in choices)
-    ]

@@ -62,10 +62,10 @@ def gone_by_codes(column: str, quantity: str, texts: Collection[str]) -> frozens
     """
     Return the cells of a column that are codes of dead trees, or of those that are gone.
 
-    They are so in a column of living or of dead trees, maybe of the date of their end, and where
-    all cells are codes of a list, and some of living trees: that of ForestGEO (forestgeo/
-    fgeo.validate), with the L of plots that have L and D, of FIA (user guide), or of FVS
-    (Essential FVS: history).
+    They are so in a column of living or of dead trees or stumps, maybe of the date of their end,
+    and where all cells are codes of a list, and some of living trees: that of ForestGEO
+    (forestgeo/fgeo.validate), with the L of plots that have L and D, of FIA (user guide), or of
+    FVS (Essential FVS: history).
     """
     codes = _CODES.get(folded(column)) or _CODES.get(f'any {quantity}')
     if codes is None or not all(re.fullmatch(codes['all'], text) for text in texts if text):

@@ -16,8 +16,11 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.species import Species
 from tree_sway.errors import FormatError
 from tree_sway.files.column_names import INVENTORY
-from tree_sway.files.scenes.inventory.columns import InventoryColumns
-from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES
+from tree_sway.files.scenes.inventory.columns import (
+    InventoryColumns,
+    missing_columns,
+    SPECIES,
+)
 from tree_sway.files.scenes.inventory.no_trees import (
     gone_by_codes,
     GROUP,
@@ -117,6 +120,7 @@ def inventory_of(
     if {*missing} - {place, may_lack}:
         raise _lacking(table, missing)
     columns = InventoryColumns(table)
+    columns.note(table.note)
     found = places_of(columns)
     _leave_out_no_trees(columns)
     diameter = diameters_of(columns)
@@ -130,6 +134,7 @@ def inventory_of(
     for row in np.flatnonzero(~np.isfinite(x + y)).tolist():
         columns.leave_out(row, 'no place', _why_no_place(columns, row))
     leave_out_without_size(columns, height, diameter)
+    _leave_out_repeated(columns, [x, y, height, diameter])
     names, wood = species_of_rows(columns, given)
     keys = [wood[each].key if each in wood else each for each in names]
     is_found = fill_heights(columns, height, diameter, keys)
@@ -219,6 +224,16 @@ def _count_trees(columns: InventoryColumns, index: int) -> None:
         )
 
 
+def _leave_out_repeated(columns: InventoryColumns, cells: Sequence[Floats]) -> None:
+    """Leave out all rows of a tree but its first, where rows of a name have one place and size."""
+    trees = [*map(str, zip(*cells, strict=True))]
+    for index in columns.table.find_all('tree_name'):
+        groups = columns.table.rows_by(index).values()
+        if all(len({trees[row] for row in rows}) == 1 for rows in groups):
+            for row in (row for rows in groups for row in rows[1:]):
+                columns.leave_out(row, 'of a tree above', columns.told(index, row))
+
+
 def _double(columns: InventoryColumns, kept: list[int], cells: Sequence[Any]) -> str:
     """Tell how many trees have the place, species and size of one before; empty for none."""
     first: dict[str, int] = {}
@@ -283,5 +298,8 @@ def _names(columns: InventoryColumns, kept: list[int]) -> list[str]:
         names[whole] = 1
         n_changed += whole != (texts[row] or name)
     if n_changed:
-        columns.note(f'{n_changed} names are changed, as they occur twice or have a slash')
+        columns.note(
+            f'{n_changed} names are changed, as they occur twice or have a slash; rows that are '
+            'stems or measurements of one tree count as trees: keep one of each'
+        )
     return [*names]
