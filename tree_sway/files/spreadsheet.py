@@ -19,6 +19,7 @@ from tree_sway.files.bounded import (
     unpacked_rows,
 )
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.column_names import is_named
 from tree_sway.files.layouts.plain import is_known
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import MAX_LINES
@@ -44,13 +45,19 @@ def read_spreadsheet(path: Path) -> TextTable:
     ]
     if not tables:
         raise FormatError('no sheet with a header and rows')
-    # A title, or a sheet of other things, may stand above: the header names species or sizes.
-    rows, number = max(tables, key=lambda table: sum(map(is_known, table[0][table[1]])))
+    # A title, or a sheet of other things, may stand above: the header names sizes or species.
+    rows, number = max(tables, key=lambda table: _worth(table[0][table[1]]))
     below = {n: row for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)}
     above = rows[number - 1] if number else []
     names = [name or over for name, over in zip_longest(rows[number], above, fillvalue='')]
     table = table_of_cells(names, below.values(), str(path), [*below])
     return replace(table, header_line=number + 1)
+
+
+def _worth(names: list[str]) -> tuple[int, int]:
+    """Return how many sizes of trees names are, and how many are known."""
+    sizes = sum(is_named(name, 'diameter', 'girth', 'height') for name in names)
+    return min(sizes, 1), sum(map(is_known, names))
 
 
 def sheets_of(path: Path) -> list[list[list[str]]]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError
@@ -69,3 +70,18 @@ def test_numbers_that_begin_anew_are_other_trees(tmp_path: Path) -> None:
     trees = read(tmp_path, '\n'.join(['tree_no,species,height', *rows]) + '\n')
     assert trees.height.tolist() == [10.0, 12.0, 10.0, 14.0]
     assert any(note.startswith('2 names are changed') for note in trees.notes)
+
+
+STEMS = 'species,stem_diameter_1_cm,stem_diameter_2_cm,height_m'
+
+
+@pytest.mark.parametrize(
+    ('header', 'whole'), [(STEMS, ''), (f'{STEMS},combined_stem_diameter_cm', ',50')]
+)
+def test_stems_beside_each_other_are_one_of_their_section(
+    tmp_path: Path, header: str, whole: str
+) -> None:
+    trees = read(tmp_path, f'{header}\nbeech,30,40,16{whole}\noak,30,NA,15{whole and ",30"}\n')
+    np.testing.assert_allclose(trees.diameter, [0.5, 0.3])
+    said = any(note.endswith('are stems: one of their section') for note in trees.notes)
+    assert said == (not whole)
