@@ -97,12 +97,13 @@ def test_a_flood_of_lines_is_refused_and_the_newest_are_read(hear, server) -> No
     link, _ = server.accept()
     with link:
         link.sendall(b'1.0\n' * 200_000)
-        pause, end = threading.Event(), time.monotonic() + 20.0
+        pause, begin = threading.Event(), time.monotonic()
         while not heard.data or heard.data[-1] != b'7.0':
-            assert time.monotonic() < end
+            assert time.monotonic() < begin + 60.0
             link.sendall(b'7.0\n')
             pause.wait(0.02)
-    assert heard.link.refused['more than 1000 messages per second'] > 180_000
+    admitted = 1000 * (time.monotonic() - begin + 2.0)  # a busy machine takes many seconds
+    assert heard.link.refused['more than 1000 messages per second'] > 200_000 - admitted
 
 
 @pytest.mark.parametrize('block', [b'\n' * 65_536, b'x' * 65_536], ids=['empty lines', 'no end'])
