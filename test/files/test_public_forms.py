@@ -396,15 +396,6 @@ def test_months_of_a_typical_year_are_of_one_year(tmp_path: Path, years: tuple[i
     assert f'months of several years are taken as those of {years[0]}' in record.notes
 
 
-def test_two_months_of_years_far_apart_are_of_a_typical_year(tmp_path: Path) -> None:
-    rows = [f'2005-01-31 {hour}:00,5,225' for hour in range(12, 24)]
-    later = [f'{{}}-02-01 {hour:02d}:00,5,225' for hour in range(12)]
-    for year, is_moved in ((2006, False), (2019, True)):
-        text = '\n'.join(['time,speed [m/s],direction', *rows, *later]).format(*[year] * 12)
-        record = read_wind(written(tmp_path, text), turbulence=False)
-        assert (record.duration < 86400.0) == is_moved
-
-
 def motion_rows(form: str) -> str:
     lines = []
     for row in range(200):
@@ -715,3 +706,17 @@ def test_inventories_are_read_as_they_are(tmp_path: Path, text: str) -> None:
     trees, width, _ = scene_of(tmp_path, text)
     assert trees == [('oak', 14.0), ('beech', 20.0)]
     assert width == pytest.approx(6.8, abs=0.1)
+
+
+def test_a_beginning_of_most_names_does_not_hide_a_known_one(tmp_path: Path) -> None:
+    header = 'time,avg_wind_speed,max_wind_speed,wind_direction,max_temp,max_hum,max_pres,battery'
+    rows = ''.join(f'2024-03-05 14:{row:02d},3,9,270,8,60,990,12\n' for row in range(20))
+    record = read_wind(written(tmp_path, f'{header}\n{rows}'), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], 3.0)
+
+
+def test_a_remark_above_a_header_is_no_line_of_a_sketch(tmp_path: Path) -> None:
+    rows = ''.join(f'2024-03-05 14:{row:02d},3,270\n' for row in range(20))
+    text = f'# Mast position X: 3.5, Y: 2.0, Z: 10.0 m\ntime,speed [m/s],direction\n{rows}'
+    record = read_wind(written(tmp_path, text), turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], 3.0)

@@ -41,6 +41,8 @@ _CENTRAL = re.compile(r'[a-z][³¹¿][a-z]|\A(?!.*[æå])(?=.*ø).*[ìšžïý]'
 """Letters of Poland and Czechia, of code page 1250, as 1252 has them; Nordic ones beside ø."""
 _USUAL = 0.9
 """Share of the letters of a text that are usual ones in its page."""
+_AS_MANY = 0.05
+"""Difference of the shares of two pages of which the first is taken."""
 _SAMPLE = 1 << 14
 _MARKS = {'utf-32': (b'\xff\xfe\0\0', b'\0\0\xfe\xff'), 'utf-16': (b'\xff\xfe', b'\xfe\xff')}
 """Byte order marks; that of UTF-32 begins as that of UTF-16."""
@@ -109,9 +111,10 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
     for page, usual in _PAGES.items():
         with suppress(UnicodeDecodeError):
             shares[page] = _usual_share(data[begin : begin + _SAMPLE], page, usual)
-    page = max(shares, key=shares.__getitem__)
-    if shares[page] >= _USUAL:
-        return data.decode(page, errors)
+    least = max(_USUAL, max(shares.values()) - _AS_MANY)
+    for page in [page for page, share in shares.items() if share >= least][:1]:
+        with suppress(UnicodeDecodeError):
+            return data.decode(page, errors)
     western = data[begin : begin + _SAMPLE].decode('cp1252', 'replace')
     return data.decode('cp1250' if _CENTRAL.search(western) else 'cp1252', errors)
 

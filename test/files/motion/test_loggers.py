@@ -443,6 +443,6 @@ def test_channels_have_times_of_their_own(tmp_path: Path) -> None:
     np.testing.assert_allclose(record.time, np.arange(20) / 100)
     np.testing.assert_allclose(record.rate[:, 2], np.radians(np.arange(20)))
     np.testing.assert_allclose(read_csv_sway(path).time, record.time)
-    path.write_text('\n'.join([OWN_TIMES, *rows]).replace('0.01,2,0,1', '0.012,2,0,1'))
+    path.write_text('\n'.join([OWN_TIMES, *rows]).replace('0.01,2,0,1', '0.016,2,0,1'))
     with pytest.raises(FormatError, match=r"several times 'X\[s\]', which differ"):
         read_motion(path)

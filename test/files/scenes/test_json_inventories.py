@@ -93,3 +93,17 @@ def test_tags_that_are_not_of_openstreetmap_leave_no_tree_out(tmp_path: Path) ->
 def test_rows_without_names_are_refused(tmp_path: Path) -> None:
     with pytest.raises(FormatError):
         read(tmp_path, [[*COLUMNS], *([*each.values()] for each in TREES)])
+
+
+def test_stems_of_a_tree_are_no_trees(tmp_path: Path) -> None:
+    tree = {'species': 'Quercus robur', 'lat': 50.0, 'lon': 8.0, 'height': 12}
+    stems = [{'species': 'Quercus robur', 'dbh': dbh} for dbh in (30, 20)]
+    trees = read(tmp_path, [{**tree, 'id': number, 'stems': stems} for number in range(3)])
+    assert len(trees.names) == 3
+
+
+def test_pages_in_metres_of_a_web_map_are_refused(tmp_path: Path) -> None:
+    feature = {'attributes': {'species': 'oak', 'height': 9}, 'geometry': {'x': 1e6, 'y': 6e6}}
+    page = {'spatialReference': {'wkid': 102100}, 'features': [feature]}
+    with pytest.raises(FormatError, match='Web Mercator'):
+        read(tmp_path, [page, page])

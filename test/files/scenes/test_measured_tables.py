@@ -59,10 +59,16 @@ def test_sections_of_a_stem_are_one_tree(tmp_path: Path) -> None:
     assert any(note.startswith('3 rows are left out: 3 of a tree above') for note in trees.notes)
 
 
-def test_rows_of_a_number_and_a_name_are_one_tree(tmp_path: Path) -> None:
-    rows = [f'{row},T{row // 3},{row // 3},0,oak,{10 + row // 3}' for row in range(9)]
-    trees = read(tmp_path, '\n'.join(['id,tree_no,x,y,species,height', *rows]) + '\n')
-    assert trees.height.tolist() == [10.0, 11.0, 12.0]
+def test_rows_with_a_number_of_their_own_are_trees_of_one_place(tmp_path: Path) -> None:
+    rows = [f'{row},S{row // 3},{row // 3},0,oak,3' for row in range(9)]
+    trees = read(tmp_path, '\n'.join(['tree_id,site_id,x,y,species,height', *rows]) + '\n')
+    assert len(trees.names) == 9
+
+
+def test_trees_of_two_species_on_one_place_are_two(tmp_path: Path) -> None:
+    rows = [f'{row},0,{species},10' for row in range(3) for species in ('oak', 'ash')]
+    trees = read(tmp_path, '\n'.join(['number,y,species,height', *rows]) + '\n')
+    assert len(trees.names) == 6
 
 
 def test_numbers_that_begin_anew_are_other_trees(tmp_path: Path) -> None:
@@ -72,16 +78,7 @@ def test_numbers_that_begin_anew_are_other_trees(tmp_path: Path) -> None:
     assert any(note.startswith('2 names are changed') for note in trees.notes)
 
 
-STEMS = 'species,stem_diameter_1_cm,stem_diameter_2_cm,height_m'
-
-
-@pytest.mark.parametrize(
-    ('header', 'whole'), [(STEMS, ''), (f'{STEMS},combined_stem_diameter_cm', ',50')]
-)
-def test_stems_beside_each_other_are_one_of_their_section(
-    tmp_path: Path, header: str, whole: str
-) -> None:
-    trees = read(tmp_path, f'{header}\nbeech,30,40,16{whole}\noak,30,NA,15{whole and ",30"}\n')
+def test_the_diameter_of_all_stems_counts_before_that_of_one(tmp_path: Path) -> None:
+    header = 'species,stem_diameter_1_cm,stem_diameter_2_cm,height_m,combined_stem_diameter_cm'
+    trees = read(tmp_path, f'{header}\nbeech,30,40,16,50\noak,30,NA,15,30\n')
     np.testing.assert_allclose(trees.diameter, [0.5, 0.3])
-    said = any(note.endswith('are stems: one of their section') for note in trees.notes)
-    assert said == (not whole)

@@ -237,7 +237,6 @@ def test_stems_in_millimetres_are_told_by_heights(tmp_path: Path) -> None:
         ('Stump present', 'No Yes No', 'dead or gone'),
         ('Live/Dead', 'L D L', 'dead or gone'),
         ('Mortality', 'alive dead alive', 'dead or gone'),
-        ('Bemerkung', '- gefällt -', 'dead or gone'),
         ('Removed', '- 2024-03-01 -', 'dead or gone'),
     ],
 )
@@ -257,6 +256,8 @@ def test_a_column_of_the_dead_tells_them(
         ('Stock', '3 1 2'),
         ('TOT', '3 1 2'),
         ('tot', '1 1 1'),
+        ('v.tot', '0.51237 0.2016 1.0'),
+        ('dead', '0.1234 0.2019 0.3'),
         ('Totholz', 'nein ja nein'),
         ('dead_wood', 'no yes no'),
         ('hedge', 'no yes no'),

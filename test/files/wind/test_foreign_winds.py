@@ -115,6 +115,8 @@ def test_reports_of_airports(tmp_path: Path) -> None:
     newest_first = read_wind(path, turbulence=False)
     assert newest_first.time.tolist() == record.time.tolist()
     np.testing.assert_array_equal(newest_first.velocity, record.velocity)
+    path.write_text('EDDF 312350Z 24015KT\nEDDF 010020Z 25015KT\n')
+    assert read_wind(path, turbulence=False).time.tolist() == [0.0, 1800.0]
     np.testing.assert_allclose(record.velocity[1], [20 * 1852 / 3600, 0, 0], atol=1e-9)
     np.testing.assert_allclose(record.velocity[3], [-5, 0, 0], atol=1e-9)
     assert record.gust is not None

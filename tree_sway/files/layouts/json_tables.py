@@ -21,7 +21,7 @@ import numpy as np
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import is_named, is_wind, unit_known
+from tree_sway.files.column_names import folded, is_named, is_wind, SENDERS, unit_known
 from tree_sway.files.json_values import (
     cell_of,
     DEEPEST,
@@ -142,8 +142,9 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
     if isinstance(node, list):
         if node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
-        inner = (table for each in node for table in _tables(each, units, source, depth + 1))
-        yield from _one_after_another(inner)
+        inner = [table for each in node for table in _tables(each, units, source, depth + 1)]
+        is_of_several = any(folded(name) in SENDERS for each in node for name in object_of(each))
+        yield from inner if is_of_several else _one_after_another(inner)
     elif isinstance(node, dict):
         if rows := list(_rows(node, own)):
             yield _records(rows, units | own, source)
@@ -157,12 +158,13 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
 
 def _one_after_another(tables: Iterable[TextTable]) -> Iterator[TextTable]:
     """Yield the tables of a list, those of following times, as of days, as one."""
-    by_columns: dict[tuple[str, ...], list[TextTable]] = {}
+    by_columns: dict[tuple[tuple[str, ...], ...], list[TextTable]] = {}
     for each in tables:
-        by_columns.setdefault(each.columns, []).append(each)
+        by_columns.setdefault((each.columns, each.units), []).append(each)
     for alike in by_columns.values():
         texts = [text for table in alike for text in table.texts]
-        note = f'{len(alike)} lists of following times are read as one'
+        notes = dict.fromkeys(each.note for each in alike if each.note)
+        note = '; '.join([f'{len(alike)} lists of following times are read as one', *notes])
         whole = replace(alike[0], texts=texts, numbers=range(1, len(texts) + 1), note=note)
         clock = time_columns(whole) if len(alike) > 1 else None
         times = times_of(whole.cells(clock[0][0], whole.rows)).seconds if clock else [0.0, 0.0]

@@ -54,7 +54,10 @@ def _are_pairs(line: str) -> bool:
 def _is_monitored(lines: Sequence[str]) -> bool:
     first = [line for line in lines[:3] if line.strip()]
     are_stamped = all(_LINE.findall(line)[0][0] for line in first)
-    has_axes = any(_AXES.search(_LINE.findall(line)[0][1]) for line in lines[:_HEAD])
+    found = [
+        _AXES.search(line) for line in lines[:_HEAD] if not line.lstrip().startswith(tuple('#%;/'))
+    ]
+    has_axes = sum(each is not None for each in found) > 1
     return len(first) > 1 and (are_stamped or has_axes or all(map(_are_pairs, first)))
 
 

@@ -134,17 +134,20 @@ def _read(lines: list[str], source: str) -> TextTable:
 
 def _without_place(names: Sequence[str]) -> Sequence[str]:
     """
-    Return names without the place or thing that most unknown ones begin with, three of four.
+    Return names without the place or thing that all unknown ones begin with.
 
-    So are ``Basel Wind Speed`` and ``pl_dbh``; the parts of a tree, as ``crown``, are kept.
+    Where none is known those of three in four do. So are ``Basel Wind Speed`` and ``pl_dbh``; the
+    parts of a tree, as ``crown``, are kept.
     """
     unknown = [name for name in names if not is_known(name)]
     begins = Counter(name[:2] for name in unknown)
-    most = [name for name in unknown if 4 * begins[name[:2]] > 3 * len(unknown)]
+    # Without another name that is known a few may begin otherwise.
+    others = len(unknown) // 4 if len(unknown) == len(names) else 0
+    most = [name for name in unknown if begins[name[:2]] >= len(unknown) - others]
     letters = zip(*most, strict=False) if len(most) > 1 else ()
     alike = ''.join(each[0] for each in takewhile(lambda each: len({*each}) == 1, letters))
     place = next(_PLACE.finditer(alike))[0]
-    short = [name.removeprefix(place) for name in names]
+    short = [name if is_known(name) else name.removeprefix(place) for name in names]
     return short if any(map(is_known, {*short} - {*names})) else names
 
 

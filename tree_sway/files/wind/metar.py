@@ -31,6 +31,8 @@ METAR = re.compile(
 )
 _DATE = re.compile(r'\b20\d\d-?\d\d-?(\d\d)')
 """Year, month and day beside a report."""
+_HALF_MONTH = 150_000
+"""Half a month as a difference of days, hours and minutes in one number."""
 _MEAN = 600.0
 """Length of the mean of a report in [s] (WMO Manual on Codes 306, FM 15)."""
 
@@ -49,7 +51,8 @@ def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> Win
     lines = enumerate(map(METAR.search, read_lines(path)), start=1)
     reports = [(number, report) for number, report in lines if report]
     steps = np.diff([int(''.join(report.groups()[:3])) for _, report in reports])
-    # The newest one may be first.
+    # The newest one may be first; a step of many days is the end of a month.
+    steps = steps[np.abs(steps) < _HALF_MONTH]
     for number, report in reports[:: -1 if (steps < 0).sum() > (steps > 0).sum() else 1]:
         today, hour, minute = (int(report[i]) for i in (1, 2, 3))
         date = None if day else _DATE.search(report.string)

@@ -23,7 +23,7 @@ _TIMES = re.compile(r'(?<![\d.,])([2-9])\s*[x×*@]\s*(\d+(?:[.,]\d+)?)')
 """A number of stems of one size, as in ``2 x 35`` or ``3 @ 150``."""
 _BETWEEN = re.compile(r'[^\W\d_]+|[-–—~/]|\.\.')
 """What stands between the two numbers of a range."""
-_CLASS = re.compile(r'^\s*(?:[a-z]\.\s+|\w\)\s*)(?=[<>=\s]*\d)')
+_CLASS = re.compile(r'^\s*(?:[a-z]\.\s|\w\))(?=[<>=\s]*\d)')
 """Letter or number of a class before its range, as in ``c. 9 tot 12 m.`` and ``2) 10 - 16m``."""
 _AND_MORE = re.compile(
     r'\s+(?:en|y|et|und|and|or)\s+(?:hoger|meer|groter|más|plus|höher|mehr|higher|over|above|more|'

@@ -78,16 +78,10 @@ class InventoryColumns:
             f'{count} {"row is" if count == 1 else "rows are"} left out: {reasons}; {self._first}'
         )
 
-    def stems(self, quantity: str) -> list[int]:
-        """Place of the best column, or of all stems of a tree, as ``DBH 1 (cm)`` and ``DBH 2``."""
-        names = self.table.columns
-        best = self.table.find_all(quantity)[:1]
-        if best and not _NUMBERED.search(names[best[0]]):
-            return best
-        all_of = [i for i, name in enumerate(names) if is_named(_NUMBERED.sub('', name), quantity)]
-        if len(all_of) > 1:
-            self.note(f'{", ".join(names[i] for i in all_of)} are stems: one of their section')
-        return all_of or best
+    def numbered(self, quantity: str) -> list[int]:
+        """Places of columns of the stems of a tree, as ``DBH 1 (cm)`` and ``DBH 2 (cm)``."""
+        names = enumerate(self.table.columns)
+        return [i for i, name in names if is_named(_NUMBERED.sub('', name), quantity)]
 
     def index_of(self, quantity: str) -> int | None:
         """Place of the first column of a quantity; None without one."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
+from functools import lru_cache
 import json
 from pathlib import Path
 import re
@@ -38,8 +38,8 @@ _IS_JSON = re.compile(r'\s*[{\[]')
 _HEAD = 9
 _MOST_NAMES = 1000
 _IS_WIND = re.compile(r'"wind_?(speed|dir)', re.IGNORECASE)
-_MERCATOR = re.compile(r'\b(3857|102100|900913)\b')
-"""Numbers of the system of maps on the web, whose metres are longer than those of the ground."""
+_MERCATOR = re.compile(r'"(?:spatialReference|crs)"[^\]]{0,200}?\b(?:3857|102100|900913)\b')
+"""The system of maps on the web, whose metres are longer than those of the ground."""
 PLACES = ('latitude', 'longitude', 'x', 'y', 'lat', 'lon')
 """Properties that a geometry replaces."""
 
@@ -64,8 +64,7 @@ def read_geojson(path: Path) -> TextTable:
     records = [each for each in records if each.get('tags.natural') == 'tree'] or records
     if not any(records):
         raise FormatError('no features', cure='export points with properties')
-    systems = [each.get('spatialReference', each.get('crs')) for each in map(object_of, documents)]
-    if _MERCATOR.search(str(systems)):
+    if any(_MERCATOR.search('\n'.join(lines)) for lines in texts):
         raise FormatError(
             'places in the Web Mercator of maps, which is not in metres of the ground',
             cure='export degrees, as by outSR=4326 in ArcGIS',
@@ -81,8 +80,9 @@ def _records_of(document: Any) -> list[Any]:
     """Return the records in a document: of a known list or columns, or else those of trees."""
     inner = object_of(document)
     features, elements, *others = (list_of(inner.get(name)) for name in _LISTS)
-    columns = ([*list_of(each), *object_of(each).values()] for each in inner.values())
-    rows = [*zip(*columns, strict=False)] if _is_tree(tuple(inner)) else []  # of pandas
+    columns = [[*list_of(each), *object_of(each).values()] for each in inner.values()]  # of pandas
+    sizes = {len(each) for each in columns}
+    rows = [*zip(*columns, strict=True)] if len(sizes) == 1 and _is_tree(tuple(inner)) else []
     records = [dict(zip(inner, row, strict=True)) for row in rows]
     known = features or elements or records or _trees_in([document])
     return known or list_of(document) or [each for other in others for each in other]
@@ -95,10 +95,16 @@ def _trees_in(node: Any, depth: int = DEEPEST) -> list[Any]:
     records = [*filter(object_of, inside)]
     n_trees = sum(_is_tree(tuple(dict(flat(each, lists=True)))) for each in records[:_HEAD])
     is_list = n_trees > isinstance(node, dict)  # an object may have one tree beside other things
-    return records if is_list and len(deeper) < 2 else deeper
+    # Lists and objects in a record of a tree are its stems, surveys or pictures.
+    own = [
+        tuple(name for name, cell in each.items() if not (object_of(cell) or list_of(cell)))
+        for each in map(object_of, records[:_HEAD])
+    ]
+    are_whole = bool(own) and all(map(_is_tree, own))
+    return records if is_list and (are_whole or len(deeper) < 2) else deeper
 
 
-@cache
+@lru_cache(2000)
 def _is_tree(names: tuple[str, ...]) -> bool:
     """Whether names have two of the place, the species and the size; the first of many tell."""
     return len(missing_columns(table_of_cells(names[:_MOST_NAMES], [], ''))) < 2

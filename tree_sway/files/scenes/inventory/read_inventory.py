@@ -226,9 +226,13 @@ def _count_trees(columns: InventoryColumns, index: int) -> None:
 
 def _leave_out_repeated(columns: InventoryColumns, cells: Sequence[Floats]) -> None:
     """Leave out all rows of a tree but its first, where rows of a name have one place and size."""
-    trees = [*map(str, zip(*cells, strict=True))]
-    for index in columns.table.find_all('tree_name'):
-        groups = columns.table.rows_by(index).values()
+    trees = [*map(str, zip(*cells, columns.texts_of('species'), strict=True))]
+    groups_of = [columns.table.rows_by(each) for each in columns.table.find_all('tree_name')]
+    if any(len(each) == columns.n_rows for each in groups_of):
+        return
+    for index, by_name in zip(columns.table.find_all('tree_name'), groups_of, strict=True):
+        by_name.pop('', None)
+        groups = by_name.values()
         if all(len({trees[row] for row in rows}) == 1 for rows in groups):
             for row in (row for rows in groups for row in rows[1:]):
                 columns.leave_out(row, 'of a tree above', columns.told(index, row))

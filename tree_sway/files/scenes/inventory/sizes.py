@@ -46,7 +46,7 @@ def diameters_of(columns: InventoryColumns) -> Floats:
     """Diameters at breast height [m], NaN without one."""
     found = np.full(columns.n_rows, np.nan)
     for quantity, over in (('diameter', 1.0), ('girth', math.pi)):
-        stems = columns.stems(quantity)
+        stems = columns.table.find_all(quantity)[:1] or columns.numbered(quantity)
         if not stems:
             continue
         index = stems[0]
