@@ -98,8 +98,13 @@ def test_without_wind_the_tree_leans_as_in_the_pictures(
 
     for pixels in pictures:
         show(pixels)
-    moved = tips_of_poses(twin.tree, twin.place())[0] - rest
-    assert moved[0] == pytest.approx(lean[0], rel=0.2)
+
+    def leans():
+        moved = tips_of_poses(twin.tree, twin.place())[0] - rest
+        return abs(moved[0] - lean[0]) < 0.2 * lean[0]
+
+    # The clock stands, and so does the tree; a pose that is read within a step is none of it.
+    observer.until(leans, f'a lean of {lean[0]:.2f} m')
     name = f'solver: camera {topic}'
     observer.until(
         lambda: show(pictures[-1]) or ((status := statuses(name)) and status.level[0] == OK),
